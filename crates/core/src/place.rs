@@ -1,0 +1,50 @@
+//! Places in a file or a shape.
+
+use std::fmt;
+
+/// Where in an input something was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The input as a whole.
+    Whole,
+    /// A line of text, counted from 1, and if known the column in bytes, counted from 1.
+    Line {
+        /// The line, counted from 1.
+        line: u64,
+        /// The column in bytes, counted from 1.
+        column: Option<u64>,
+    },
+    /// An offset in bytes, counted from 0.
+    Byte(u64),
+    /// An element of a shape: `vertex 7`, `patch 3`, counted from 0.
+    Element {
+        /// What kind of element.
+        kind: &'static str,
+        /// Its index, counted from 0.
+        index: u64,
+    },
+}
+
+impl Place {
+    /// A line of text, counted from 1.
+    pub fn line(line: u64) -> Self {
+        Self::Line { line, column: None }
+    }
+
+    /// An element of a shape, counted from 0.
+    pub fn element(kind: &'static str, index: u64) -> Self {
+        Self::Element { kind, index }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("the whole input"),
+            Self::Line { line, column: None } => write!(f, "line {line}"),
+            Self::Line { line, column: Some(column) } => write!(f, "line {line}, column {column}"),
+            Self::Byte(offset) => write!(f, "byte {offset}"),
+            Self::Element { kind, index } => write!(f, "{kind} {index}"),
+        }
+    }
+}
