@@ -1,0 +1,46 @@
+//! Meshes and their simpler relatives: data structures, attributes, and the operations that need nothing else.
+//!
+//! - [`TriMesh`] and [`PolyMesh`]: indexed faces with attribute columns on vertices, faces and wedges (the corners of
+//!   faces).
+//! - [`Polyline`], [`HeightField`], [`PointCloud`].
+//! - [`Column`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every operation by one
+//!   function, or their loss reported.
+//! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
+//!   [`TriangulatePolygons`], [`TriangulateHeightField`].
+//! - [`primitives`]: ready shapes with closed-form facts.
+
+pub mod primitives;
+
+mod attributes;
+mod carry;
+mod column;
+mod ear_clipping;
+mod error;
+mod height_field;
+mod mesh_attributes;
+mod normals;
+mod point_cloud;
+mod poly_mesh;
+mod polyline;
+mod sums;
+mod tri_mesh;
+mod triangulate_height_field;
+mod triangulate_polygons;
+mod vertex_normals;
+mod weld;
+
+pub use attributes::{Attributes, COLOR, NORMAL, PATCH, TEXCOORD};
+pub use carry::{MeshOrigins, Origins, carry};
+pub use column::{Blend, Column, TransformRule, Values};
+pub use error::{AttributeError, Domain, MeshError};
+pub use height_field::HeightField;
+pub use mesh_attributes::MeshAttributes;
+pub use normals::{face_normals, newell_vector, triangle_normal};
+pub use point_cloud::PointCloud;
+pub use poly_mesh::PolyMesh;
+pub use polyline::Polyline;
+pub use tri_mesh::TriMesh;
+pub use triangulate_height_field::{Diagonal, TriangulateHeightField};
+pub use triangulate_polygons::TriangulatePolygons;
+pub use vertex_normals::{NormalWeight, VertexNormals};
+pub use weld::Weld;
