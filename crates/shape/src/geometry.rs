@@ -1,0 +1,157 @@
+//! The representations that a part can hold.
+
+use std::fmt;
+
+use shapeloom_core::glam::DVec3;
+use shapeloom_core::{Aabb, Affine, Category, Diagnostic};
+use shapeloom_mesh::{HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
+use shapeloom_parametric::{BezierCurve, BezierSurface};
+
+use crate::Kind;
+
+/// A shape in one representation. More come as families arrive.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Geometry {
+    /// Points with attributes.
+    PointCloud(PointCloud),
+    /// A Bézier curve in space.
+    BezierCurve(BezierCurve<DVec3>),
+    /// Tensor-product Bézier patches.
+    BezierSurface(BezierSurface),
+    /// Points joined by segments.
+    Polyline(Polyline),
+    /// Heights over a grid.
+    HeightField(HeightField),
+    /// Indexed polygons.
+    PolyMesh(PolyMesh),
+    /// Indexed triangles.
+    TriMesh(TriMesh),
+}
+
+impl Geometry {
+    /// Which representation it is.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::PointCloud(_) => Kind::PointCloud,
+            Self::BezierCurve(_) => Kind::BezierCurve,
+            Self::BezierSurface(_) => Kind::BezierSurface,
+            Self::Polyline(_) => Kind::Polyline,
+            Self::HeightField(_) => Kind::HeightField,
+            Self::PolyMesh(_) => Kind::PolyMesh,
+            Self::TriMesh(_) => Kind::TriMesh,
+        }
+    }
+
+    /// A box that holds the geometry: the smallest one around its points, or around the control points of curves and
+    /// surfaces.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::PointCloud(cloud) => cloud.bounds(),
+            Self::BezierCurve(curve) => curve.hull_bounds(),
+            Self::BezierSurface(surface) => surface.hull_bounds(),
+            Self::Polyline(line) => line.bounds(),
+            Self::HeightField(field) => field.bounds(),
+            Self::PolyMesh(mesh) => mesh.bounds(),
+            Self::TriMesh(mesh) => mesh.bounds(),
+        }
+    }
+
+    /// The image under an affine map.
+    #[must_use]
+    pub fn transformed(&self, map: &Affine) -> Self {
+        match self {
+            Self::PointCloud(cloud) => Self::PointCloud(cloud.transformed(map)),
+            Self::BezierCurve(curve) => Self::BezierCurve(curve.transformed(map)),
+            Self::BezierSurface(surface) => Self::BezierSurface(surface.transformed(map)),
+            Self::Polyline(line) => Self::Polyline(line.transformed(map)),
+            Self::HeightField(field) => Self::HeightField(field.transformed(map)),
+            Self::PolyMesh(mesh) => Self::PolyMesh(mesh.transformed(map)),
+            Self::TriMesh(mesh) => Self::TriMesh(mesh.transformed(map)),
+        }
+    }
+
+    /// The memory that the geometry takes, in bytes.
+    pub fn memory_bytes(&self) -> usize {
+        match self {
+            Self::PointCloud(cloud) => cloud.memory_bytes(),
+            Self::BezierCurve(curve) => size_of_val(curve.control_points()),
+            Self::BezierSurface(surface) => surface.memory_bytes(),
+            Self::Polyline(line) => line.memory_bytes(),
+            Self::HeightField(field) => field.memory_bytes(),
+            Self::PolyMesh(mesh) => mesh.memory_bytes(),
+            Self::TriMesh(mesh) => mesh.memory_bytes(),
+        }
+    }
+}
+
+/// A geometry of another kind than the one asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongKind {
+    /// What was asked for.
+    pub expected: Kind,
+    /// What it is.
+    pub found: Kind,
+}
+
+impl fmt::Display for WrongKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "found a {}, expected a {}", self.found, self.expected)
+    }
+}
+
+impl std::error::Error for WrongKind {}
+
+impl Diagnostic for WrongKind {
+    fn code(&self) -> &'static str {
+        "E-shape-kind"
+    }
+
+    fn category(&self) -> Category {
+        Category::Unsupported
+    }
+}
+
+macro_rules! holds {
+    ($($variant:ident($type:ty)),* $(,)?) => {$(
+        impl From<$type> for Geometry {
+            fn from(value: $type) -> Self {
+                Self::$variant(value)
+            }
+        }
+
+        impl<'a> TryFrom<&'a Geometry> for &'a $type {
+            type Error = WrongKind;
+
+            fn try_from(geometry: &'a Geometry) -> Result<Self, WrongKind> {
+                match geometry {
+                    Geometry::$variant(value) => Ok(value),
+                    other => Err(WrongKind { expected: Kind::$variant, found: other.kind() }),
+                }
+            }
+        }
+    )*};
+}
+
+holds!(
+    PointCloud(PointCloud),
+    BezierCurve(BezierCurve<DVec3>),
+    BezierSurface(BezierSurface),
+    Polyline(Polyline),
+    HeightField(HeightField),
+    PolyMesh(PolyMesh),
+    TriMesh(TriMesh),
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_come_out_as_they_went_in() {
+        let geometry = Geometry::from(TriMesh::default());
+        assert_eq!(<&TriMesh>::try_from(&geometry), Ok(&TriMesh::default()));
+        let error = <&PolyMesh>::try_from(&geometry).unwrap_err();
+        assert_eq!(error.to_string(), "found a tri-mesh, expected a poly-mesh");
+    }
+}
