@@ -4,6 +4,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine, Curve, Interval, VectorSpace};
 
 use crate::BezierError;
+use crate::bounds::tight_bounds;
 use crate::de_casteljau::{self, MAX_DEGREE};
 
 /// A Bézier curve of any degree up to 255 over `[0, 1]`, in the plane or in space.
@@ -142,6 +143,12 @@ impl<P: VectorSpace> BezierCurve<P> {
     /// The box around the control points, which holds the curve.
     pub fn hull_bounds(&self) -> Aabb {
         Aabb::from_points(self.control.iter().map(|point| point.to_space()))
+    }
+
+    /// The box of the curve itself: it holds the curve, and is larger by at most a billionth of its size.
+    pub fn bounds(&self) -> Aabb {
+        let control: Vec<DVec3> = self.control.iter().map(|point| point.to_space()).collect();
+        tight_bounds([(control.len(), control.as_slice())])
     }
 
     /// The length of the control polygon, which is no less than the curve's.

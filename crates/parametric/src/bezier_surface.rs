@@ -3,6 +3,7 @@
 use shapeloom_core::{Aabb, Affine};
 
 use crate::BezierPatch;
+use crate::bounds::tight_bounds;
 
 /// One of the four sides of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,6 +44,12 @@ impl BezierSurface {
     /// The box around the control nets, which holds the surface.
     pub fn hull_bounds(&self) -> Aabb {
         self.patches.iter().map(BezierPatch::hull_bounds).fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    /// The box of the surface itself: it holds the surface, and is larger by at most a billionth of its size. Found by
+    /// subdividing the patches whose hull still reaches beyond the points known to be on the surface.
+    pub fn bounds(&self) -> Aabb {
+        tight_bounds(self.patches.iter().map(|patch| (patch.degree_u() + 1, patch.control_points())))
     }
 
     /// The image under an affine map; see [`BezierPatch::transformed`].

@@ -21,30 +21,38 @@ pub(crate) fn evaluate<P: VectorSpace>(points: &mut [P], t: f64) -> P {
     points[0]
 }
 
+/// Replaces the control points by those of the part before `t`.
+fn keep_before<P: VectorSpace>(points: &mut [P], t: f64) {
+    for round in 1..points.len() {
+        for i in (round..points.len()).rev() {
+            points[i] = points[i - 1] * (1.0 - t) + points[i] * t;
+        }
+    }
+}
+
+/// Replaces the control points by those of the part after `t`.
+fn keep_after<P: VectorSpace>(points: &mut [P], t: f64) {
+    for len in (2..=points.len()).rev() {
+        step(&mut points[..len], t);
+    }
+}
+
 /// Cuts the control points at `t`: `points` becomes the part before it, the result is the part after.
 pub(crate) fn split<P: VectorSpace>(points: &mut [P], t: f64) -> Vec<P> {
-    let count = points.len();
     let mut after = points.to_vec();
-    // Round k leaves the k-th point of the left part at the front, and the k-th last of the right part at the back.
-    let mut row = points.to_vec();
-    for k in 1..count {
-        step(&mut row[..count - k + 1], t);
-        points[k] = row[0];
-        after[count - 1 - k] = row[count - 1 - k];
-    }
+    keep_after(&mut after, t);
+    keep_before(points, t);
     after
 }
 
 /// Restricts the control points to `[a, b]`.
 pub(crate) fn restrict<P: VectorSpace>(points: &mut [P], a: f64, b: f64) {
     if b < 1.0 {
-        split(points, b);
+        keep_before(points, b);
     }
     if a > 0.0 {
         // The share of the part [0, b] that lies before a.
-        let t = if b > 0.0 { a / b } else { 0.0 };
-        let after = split(points, t);
-        points.copy_from_slice(&after);
+        keep_after(points, if b > 0.0 { a / b } else { 0.0 });
     }
 }
 

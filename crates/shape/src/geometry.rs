@@ -43,13 +43,12 @@ impl Geometry {
         }
     }
 
-    /// A box that holds the geometry: the smallest one around its points, or around the control points of curves and
-    /// surfaces.
+    /// The box of the geometry; of curves and surfaces within a billionth of its size.
     pub fn bounds(&self) -> Aabb {
         match self {
             Self::PointCloud(cloud) => cloud.bounds(),
-            Self::BezierCurve(curve) => curve.hull_bounds(),
-            Self::BezierSurface(surface) => surface.hull_bounds(),
+            Self::BezierCurve(curve) => curve.bounds(),
+            Self::BezierSurface(surface) => surface.bounds(),
             Self::Polyline(line) => line.bounds(),
             Self::HeightField(field) => field.bounds(),
             Self::PolyMesh(mesh) => mesh.bounds(),
@@ -112,6 +111,18 @@ impl Diagnostic for WrongKind {
     }
 }
 
+/// A type that is one kind of [`Geometry`].
+pub trait Representation: Into<Geometry> {
+    /// Which one.
+    const KIND: Kind;
+
+    /// The value, if the geometry is of this kind.
+    ///
+    /// # Errors
+    /// The geometry is of another kind.
+    fn from_geometry(geometry: &Geometry) -> Result<&Self, WrongKind>;
+}
+
 macro_rules! holds {
     ($($variant:ident($type:ty)),* $(,)?) => {$(
         impl From<$type> for Geometry {
@@ -120,13 +131,13 @@ macro_rules! holds {
             }
         }
 
-        impl<'a> TryFrom<&'a Geometry> for &'a $type {
-            type Error = WrongKind;
+        impl Representation for $type {
+            const KIND: Kind = Kind::$variant;
 
-            fn try_from(geometry: &'a Geometry) -> Result<Self, WrongKind> {
+            fn from_geometry(geometry: &Geometry) -> Result<&Self, WrongKind> {
                 match geometry {
                     Geometry::$variant(value) => Ok(value),
-                    other => Err(WrongKind { expected: Kind::$variant, found: other.kind() }),
+                    other => Err(WrongKind { expected: Self::KIND, found: other.kind() }),
                 }
             }
         }
@@ -150,8 +161,8 @@ mod tests {
     #[test]
     fn values_come_out_as_they_went_in() {
         let geometry = Geometry::from(TriMesh::default());
-        assert_eq!(<&TriMesh>::try_from(&geometry), Ok(&TriMesh::default()));
-        let error = <&PolyMesh>::try_from(&geometry).unwrap_err();
+        assert_eq!(TriMesh::from_geometry(&geometry), Ok(&TriMesh::default()));
+        let error = PolyMesh::from_geometry(&geometry).unwrap_err();
         assert_eq!(error.to_string(), "found a tri-mesh, expected a poly-mesh");
     }
 }

@@ -10,7 +10,7 @@ mod material;
 mod shape;
 mod units;
 
-pub use geometry::{Geometry, WrongKind};
+pub use geometry::{Geometry, Representation, WrongKind};
 pub use kind::{Family, Kind};
 pub use material::Material;
 pub use shape::{Part, Shape};

@@ -1,0 +1,190 @@
+//! Control nets of second derivatives, for bounds over parts of a patch.
+
+use shapeloom_core::Interval;
+use shapeloom_core::glam::DVec3;
+
+use crate::{BezierPatch, SecondDerivativeBounds, de_casteljau};
+
+/// A net of vectors in Bernstein form.
+#[derive(Clone, Debug)]
+struct Net {
+    width: usize,
+    vectors: Vec<DVec3>,
+    longest: f64,
+}
+
+impl Net {
+    fn new(width: usize, vectors: Vec<DVec3>) -> Self {
+        let longest = longest(&vectors);
+        Self { width, vectors, longest }
+    }
+
+    /// Bounds the length over a part of the domain.
+    fn bound(&self, u: Interval, v: Interval, scratch: &mut Scratch) -> f64 {
+        if self.longest == 0.0 {
+            return 0.0;
+        }
+        let Scratch { net, column } = scratch;
+        net.clear();
+        net.extend_from_slice(&self.vectors);
+        for row in net.chunks_exact_mut(self.width) {
+            de_casteljau::restrict(row, u.lo, u.hi);
+        }
+        let mut most = 0.0f64;
+        for i in 0..self.width {
+            column.clear();
+            column.extend(net.iter().skip(i).step_by(self.width));
+            de_casteljau::restrict(column, v.lo, v.hi);
+            most = most.max(longest(column));
+        }
+        // Restriction rounds each vector by a few units in the last place of the longest of the whole net.
+        most + 1e-13 * self.longest
+    }
+}
+
+fn longest(vectors: &[DVec3]) -> f64 {
+    vectors.iter().map(|vector| vector.length_squared()).fold(0.0, f64::max).sqrt()
+}
+
+/// Space for [`CurvatureNets::bounds`] to work in.
+#[derive(Default)]
+pub(crate) struct Scratch {
+    net: Vec<DVec3>,
+    column: Vec<DVec3>,
+}
+
+/// The second partial derivatives of a patch in Bernstein form.
+pub(crate) struct CurvatureNets {
+    uu: Net,
+    uv: Net,
+    vv: Net,
+}
+
+impl CurvatureNets {
+    pub(crate) fn new(patch: &BezierPatch) -> Self {
+        let (m, n) = (patch.degree_u(), patch.degree_v());
+        let net = |along_u: usize, along_v: usize| {
+            if m < along_u || n < along_v {
+                return Net::new(1, Vec::new());
+            }
+            let factor = falling(m, along_u) * falling(n, along_v);
+            let mut vectors = Vec::with_capacity((m + 1 - along_u) * (n + 1 - along_v));
+            for j in 0..=n - along_v {
+                for i in 0..=m - along_u {
+                    let at = |di: usize, dj: usize| patch.control_point(i + di, j + dj);
+                    let difference = match (along_u, along_v) {
+                        (2, 0) => (at(0, 0) - at(1, 0)) + (at(2, 0) - at(1, 0)),
+                        (0, 2) => (at(0, 0) - at(0, 1)) + (at(0, 2) - at(0, 1)),
+                        _ => (at(1, 1) - at(0, 1)) - (at(1, 0) - at(0, 0)),
+                    };
+                    vectors.push(difference * factor);
+                }
+            }
+            Net::new(m + 1 - along_u, vectors)
+        };
+        Self { uu: net(2, 0), uv: net(1, 1), vv: net(0, 2) }
+    }
+
+    /// Bounds over the whole patch.
+    pub(crate) fn whole(&self) -> SecondDerivativeBounds {
+        SecondDerivativeBounds { uu: self.uu.longest, uv: self.uv.longest, vv: self.vv.longest }
+    }
+
+    /// Bounds over a part of the patch.
+    pub(crate) fn bounds(&self, u: Interval, v: Interval, scratch: &mut Scratch) -> SecondDerivativeBounds {
+        SecondDerivativeBounds {
+            uu: self.uu.bound(u, v, scratch),
+            uv: self.uv.bound(u, v, scratch),
+            vv: self.vv.bound(u, v, scratch),
+        }
+    }
+}
+
+/// `n · (n - 1) ⋯` with `factors` factors.
+fn falling(n: usize, factors: usize) -> f64 {
+    (0..factors).map(|k| (n - k) as f64).product()
+}
+
+impl SecondDerivativeBounds {
+    /// How far a triangle may be from the surface it interpolates, over any parameter triangle in a box of that width
+    /// and height.
+    ///
+    /// Let p be a point of the triangle with barycentric weights λᵢ, dᵢ the steps from p to its corners, H a bound of
+    /// the second derivative. By Taylor's theorem with the integral remainder the distance is at most
+    /// ½ Σ λᵢ (uu·duᵢ² + 2·uv·|duᵢ·dvᵢ| + vv·dvᵢ²). Σ λᵢ duᵢ² is a variance over an interval of length `width`, hence at
+    /// most width²/4 (Popoviciu), and the mixed term follows by Cauchy and Schwarz. For right triangles this is the
+    /// bound of Filip, Magedson and Markot (1986).
+    pub(crate) fn chord_error(&self, width: f64, height: f64) -> f64 {
+        (self.uu * width * width + 2.0 * self.uv * width * height + self.vv * height * height) / 8.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shapeloom_core::Surface;
+
+    fn wavy() -> BezierPatch {
+        let control = (0..20)
+            .map(|k| {
+                let (i, j) = (f64::from(k % 5), f64::from(k / 5));
+                DVec3::new(i + 0.2 * (j * 1.7).sin(), j, (i * 1.3).cos() * (j * 0.9).sin() * 2.0)
+            })
+            .collect();
+        BezierPatch::try_new(4, 3, control).unwrap()
+    }
+
+    #[test]
+    fn bounds_hold_over_every_part_and_tighten() {
+        let (patch, mut scratch) = (wavy(), Scratch::default());
+        let nets = CurvatureNets::new(&patch);
+        let whole = nets.whole();
+        let wanted = patch.second_derivative_bounds();
+        assert!((whole.uu - wanted.uu).abs() < 1e-13 * wanted.uu && (whole.uv - wanted.uv).abs() < 1e-13 * wanted.uv);
+        for cut in 0..16 {
+            let (i, j) = (f64::from(cut % 4) / 4.0, f64::from(cut / 4) / 4.0);
+            let (u, v) = (Interval::new(i, i + 0.25), Interval::new(j, j + 0.25));
+            let bounds = nets.bounds(u, v, &mut scratch);
+            let mut largest = SecondDerivativeBounds { uu: 0.0, uv: 0.0, vv: 0.0 };
+            for sample in 0..121 {
+                let jet = patch.jet(u.at(f64::from(sample % 11) / 10.0), v.at(f64::from(sample / 11) / 10.0));
+                largest.uu = largest.uu.max(jet.duu.length());
+                largest.uv = largest.uv.max(jet.duv.length());
+                largest.vv = largest.vv.max(jet.dvv.length());
+            }
+            for (bound, found) in [(bounds.uu, largest.uu), (bounds.uv, largest.uv), (bounds.vv, largest.vv)] {
+                assert!(found <= bound && bound < 1.5 * found, "{cut}: {bound} {found}");
+            }
+            let slack = 1.0 + 1e-12;
+            assert!(bounds.uu <= slack * whole.uu && bounds.uv <= slack * whole.uv && bounds.vv <= slack * whole.vv);
+        }
+    }
+
+    /// The bound against the true error of triangles of every shape over a quadratic, where it can be met.
+    #[test]
+    fn chord_error_bounds_triangles_of_any_shape_and_is_met() {
+        let bowl = |p: [f64; 2]| p[0] * p[0] + p[1] * p[1];
+        let bounds = SecondDerivativeBounds { uu: 2.0, uv: 0.0, vv: 2.0 };
+        let mut closest = 0.0f64;
+        for code in 0..4096u32 {
+            let at = |k: u32| [f64::from(code >> (2 * k) & 3) / 3.0, f64::from(code >> (2 * k + 1) & 3) / 3.0];
+            let corners = [at(0), at(2), at(4)];
+            let extent = |axis: usize| {
+                let coordinates = corners.map(|corner| corner[axis]);
+                coordinates.iter().fold(0.0, |m: f64, &x| m.max(x))
+                    - coordinates.iter().fold(1.0, |m: f64, &x| m.min(x))
+            };
+            let bound = bounds.chord_error(extent(0), extent(1));
+            for weight in 0..66u32 {
+                let (a, b) = (f64::from(weight % 11) / 10.0, f64::from(weight / 11) / 10.0);
+                let weights = [a, b * (1.0 - a), (1.0 - b) * (1.0 - a)];
+                let mix = |f: &dyn Fn([f64; 2]) -> f64| (0..3).map(|k| weights[k] * f(corners[k])).sum::<f64>();
+                let p = [mix(&|c| c[0]), mix(&|c| c[1])];
+                let error = (mix(&bowl) - bowl(p)).abs();
+                assert!(error <= bound + 1e-15, "{corners:?}");
+                closest = closest.max(if bound > 0.0 { error / bound } else { 0.0 });
+            }
+        }
+        assert!(closest > 0.999);
+    }
+}
