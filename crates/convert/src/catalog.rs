@@ -1,0 +1,21 @@
+//! The list of converters: a new one is one line here.
+
+use shapeloom_core::glam::DVec3;
+use shapeloom_mesh::{
+    HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+};
+use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
+
+use crate::registry::{Converter, Effect, entry};
+
+/// Makes the list of every converter: across kinds first, then within one.
+pub fn catalog() -> Vec<Converter> {
+    vec![
+        entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
+        entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
+        entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
+        entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<Weld, TriMesh>(Effect::Reported),
+        entry::<VertexNormals, TriMesh>(Effect::Exact),
+    ]
+}

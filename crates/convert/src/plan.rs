@@ -1,0 +1,151 @@
+//! The way from one kind to another.
+
+use std::collections::VecDeque;
+
+use shapeloom_shape::Kind;
+
+use crate::{Converter, Effect, PlanError, converter, registry};
+
+/// What a way must do.
+#[derive(Clone, Debug, Default)]
+pub struct Wish {
+    /// The kinds that will do, the best first.
+    pub targets: Vec<Kind>,
+    /// A converter that must be on the way.
+    pub method: Option<String>,
+    /// A kind that must be on the way.
+    pub via: Option<Kind>,
+}
+
+impl Wish {
+    /// Any way to one of these kinds.
+    pub fn to(targets: impl Into<Vec<Kind>>) -> Self {
+        Self { targets: targets.into(), ..Self::default() }
+    }
+}
+
+/// Converters to run one after the other; none where the source will do as it is.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// The converters in order.
+    pub steps: Vec<&'static Converter>,
+}
+
+impl Plan {
+    /// How many of the steps use up some of the tolerance.
+    pub fn lossy_steps(&self) -> usize {
+        self.steps.iter().filter(|step| step.effect == Effect::WithinTolerance).count()
+    }
+}
+
+/// The shortest way from a kind that does what is wished; between ways of equal length the one whose converters stand
+/// first in the registry.
+///
+/// # Errors
+/// There is no such way, or no converter of that name.
+pub fn plan(from: Kind, wish: &Wish) -> Result<Plan, PlanError> {
+    let mut steps = Vec::new();
+    let mut at = from;
+    if let Some(name) = &wish.method {
+        let method = converter(name).ok_or_else(|| PlanError::UnknownMethod {
+            found: name.clone(),
+            known: registry().iter().map(|converter| converter.name).collect(),
+        })?;
+        let off = || PlanError::MethodOffTheWay {
+            method: method.name,
+            takes: method.from,
+            gives: method.to,
+            from,
+            to: wish.targets.clone(),
+        };
+        steps.extend(shortest(at, &[method.from]).ok_or_else(off)?);
+        steps.push(method);
+        at = method.to;
+    }
+    let no_way = |from: Kind, to: &[Kind]| PlanError::NoWay { from, to: to.to_vec(), reachable: reachable(from) };
+    if let Some(via) = wish.via
+        && !steps.iter().any(|step| step.to == via)
+        && at != via
+    {
+        steps.extend(shortest(at, &[via]).ok_or_else(|| no_way(at, &[via]))?);
+        at = via;
+    }
+    steps.extend(shortest(at, &wish.targets).ok_or_else(|| no_way(at, &wish.targets))?);
+    Ok(Plan { steps })
+}
+
+/// Breadth first over kinds; a target earlier in the list wins only between ways of equal length.
+fn shortest(from: Kind, targets: &[Kind]) -> Option<Vec<&'static Converter>> {
+    if targets.contains(&from) {
+        return Some(Vec::new());
+    }
+    let mut reached: Vec<(Kind, Option<(usize, &'static Converter)>)> = vec![(from, None)];
+    let mut queue = VecDeque::from([0]);
+    let mut found: Option<(usize, usize, usize)> = None;
+    let mut depth = vec![0];
+    while let Some(index) = queue.pop_front() {
+        let at = reached[index].0;
+        for step in registry().iter().filter(|step| step.from == at) {
+            if reached.iter().any(|(kind, _)| *kind == step.to) {
+                continue;
+            }
+            reached.push((step.to, Some((index, step))));
+            depth.push(depth[index] + 1);
+            let node = reached.len() - 1;
+            if let Some(rank) = targets.iter().position(|&target| target == step.to) {
+                let candidate = (depth[node], rank, node);
+                found = Some(found.map_or(candidate, |best| best.min(candidate)));
+            }
+            queue.push_back(node);
+        }
+    }
+    let (_, _, mut node) = found?;
+    let mut steps = Vec::new();
+    while let Some((before, step)) = reached[node].1 {
+        steps.push(step);
+        node = before;
+    }
+    steps.reverse();
+    Some(steps)
+}
+
+/// The kinds that can be made from one, itself left out.
+fn reachable(from: Kind) -> Vec<Kind> {
+    Kind::ALL.into_iter().filter(|&kind| kind != from && shortest(from, &[kind]).is_some()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(plan: &Plan) -> Vec<&'static str> {
+        plan.steps.iter().map(|step| step.name).collect()
+    }
+
+    #[test]
+    fn everything_with_a_surface_reaches_triangles() {
+        for kind in [Kind::BezierSurface, Kind::HeightField, Kind::PolyMesh, Kind::TriMesh] {
+            assert!(plan(kind, &Wish::to([Kind::TriMesh])).is_ok(), "{kind}");
+        }
+    }
+
+    #[test]
+    fn methods_and_vias_are_on_the_way() {
+        let wish = Wish { method: Some("weld".into()), ..Wish::to([Kind::TriMesh]) };
+        assert_eq!(names(&plan(Kind::BezierSurface, &wish).unwrap()), ["tessellate-patches", "weld"]);
+        assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["triangulate-polygons", "weld"]);
+        let wish = Wish { via: Some(Kind::TriMesh), ..Wish::to([Kind::PolyMesh, Kind::TriMesh]) };
+        assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["triangulate-polygons"]);
+        assert!(plan(Kind::TriMesh, &Wish::to([Kind::TriMesh])).unwrap().steps.is_empty());
+    }
+
+    #[test]
+    fn where_no_way_leads_the_error_says_what_can_be_reached() {
+        let error = plan(Kind::BezierCurve, &Wish::to([Kind::TriMesh])).unwrap_err();
+        assert_eq!(error.to_string(), "found no way from bezier-curve to tri-mesh, only to polyline");
+        let wish = Wish { method: Some("tessellate-curve".into()), ..Wish::to([Kind::TriMesh]) };
+        assert!(matches!(plan(Kind::TriMesh, &wish), Err(PlanError::MethodOffTheWay { .. })));
+        let wish = Wish { method: Some("magic".into()), ..Wish::to([Kind::TriMesh]) };
+        assert!(matches!(plan(Kind::TriMesh, &wish), Err(PlanError::UnknownMethod { .. })));
+    }
+}
