@@ -1,0 +1,124 @@
+//! Reports as JSON and as words.
+
+use serde_json::{Value, json};
+use shapeloom_convert::{Conversion, Step};
+use shapeloom_core::{Aabb, Deviation, Findings, Loss, OptionSpec, OptionValue, Place, Report, Severity};
+
+/// A number, or nothing where JSON has none for it.
+pub(crate) fn number(value: f64) -> Value {
+    serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number)
+}
+
+pub(crate) fn bounds(bounds: &Aabb) -> Value {
+    let point = |p: [f64; 3]| Value::Array(p.into_iter().map(number).collect());
+    json!({ "min": point(bounds.min.to_array()), "max": point(bounds.max.to_array()) })
+}
+
+pub(crate) fn deviation(deviation: Deviation) -> Value {
+    match deviation.value() {
+        Some(value) => json!({ "kind": deviation.kind(), "value": number(value) }),
+        None => json!({ "kind": deviation.kind() }),
+    }
+}
+
+pub(crate) fn losses(losses: &[Loss]) -> Value {
+    losses.iter().map(|loss| json!({ "what": loss.what, "why": loss.why })).collect()
+}
+
+pub(crate) fn findings(findings: &Findings) -> Value {
+    let place = |place: &Place| match place {
+        Place::Whole => json!("whole"),
+        Place::Line { line, column } => json!({ "line": line, "column": column }),
+        Place::Byte(offset) => json!({ "byte": offset }),
+        Place::Element { kind, index } => json!({ "kind": kind, "index": index }),
+    };
+    let one = |finding: &shapeloom_core::Finding| {
+        json!({
+            "code": finding.code,
+            "severity": if finding.severity == Severity::Warning { "warning" } else { "note" },
+            "message": finding.message,
+            "count": finding.count,
+            "places": finding.places.iter().map(place).collect::<Vec<_>>(),
+        })
+    };
+    findings.iter().map(one).collect()
+}
+
+pub(crate) fn option_value(value: &OptionValue) -> Value {
+    match value {
+        OptionValue::Float(value) => number(*value),
+        OptionValue::Integer(value) => json!(value),
+        OptionValue::Bool(value) => json!(value),
+        OptionValue::Text(value) => json!(value),
+    }
+}
+
+pub(crate) fn option_spec(spec: &OptionSpec) -> Value {
+    json!({
+        "name": spec.name,
+        "doc": spec.doc,
+        "takes": spec.kind.to_string(),
+        "bounds": spec.bounds.to_string(),
+        "default": spec.default.as_ref().map(option_value),
+    })
+}
+
+pub(crate) fn report(report: &Report) -> Value {
+    let figures: serde_json::Map<String, Value> =
+        report.figures.iter().map(|figure| (figure.name.clone(), number(figure.value))).collect();
+    let mut object = json!({
+        "deviation": deviation(report.deviation),
+        "basis": report.basis,
+        "losses": losses(&report.losses),
+        "findings": findings(&report.findings),
+        "figures": figures,
+    });
+    if !report.certificates.is_empty() {
+        object["certificates"] = report.certificates.iter().map(|&bound| number(bound)).collect();
+    }
+    object
+}
+
+/// The steps of a conversion; with their seconds only where that was asked for, so that reports are reproducible.
+pub(crate) fn steps(conversion: &Conversion, timings: bool) -> Value {
+    let one = |(index, step): (usize, &Step)| {
+        let options: serde_json::Map<String, Value> =
+            step.options.iter().map(|(name, value)| ((*name).to_owned(), option_value(value))).collect();
+        let mut object = json!({
+            "converter": step.converter,
+            "parts": step.parts,
+            "from": step.from.name(),
+            "to": step.to.name(),
+            "options": options,
+            "report": report(&step.report),
+        });
+        if timings {
+            object["seconds"] = number(conversion.timings.seconds[index]);
+        }
+        object
+    };
+    conversion.steps.iter().enumerate().map(one).collect()
+}
+
+/// A step in a line of words.
+pub(crate) fn step_words(step: &Step, seconds: Option<f64>) -> String {
+    let sizes: Vec<String> = step
+        .report
+        .figures
+        .iter()
+        .filter(|figure| figure.value.fract() == 0.0)
+        .map(|figure| format!("{} {}", figure.value, figure.name.replace('_', " ")))
+        .collect();
+    let mut words = format!("{}: {} -> {}", step.converter, step.from, step.to);
+    if step.parts.len() > 1 {
+        words += &format!(" for {} parts", step.parts.len());
+    }
+    if !sizes.is_empty() {
+        words += &format!(", {}", sizes.join(", "));
+    }
+    words += &format!("; error {}", step.report.deviation);
+    if let Some(seconds) = seconds {
+        words += &format!("; {seconds:.3} s");
+    }
+    words
+}

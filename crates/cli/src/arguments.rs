@@ -1,0 +1,267 @@
+//! What the command line understands.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+use shapeloom_core::Tolerance;
+
+/// Represents shapes in many forms, converts any of them into any other, and says what each conversion cost.
+#[derive(Debug, Parser)]
+#[command(name = "shapeloom", version, max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    pub(crate) globals: Globals,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// Options of every command.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options of every command")]
+pub(crate) struct Globals {
+    /// Say nothing but errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub(crate) quiet: bool,
+    /// Say more: the options of each step, every loss and finding
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
+    /// Print one JSON object on standard output
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// How many threads to use; by default one for each processor
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// The seed of everything random; only the noise of pictures is
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u32,
+    /// The most memory for data, in bytes or with K, M or G (1024, 1024², 1024³)
+    #[arg(long, global = true, value_name = "BYTES", value_parser = bytes, default_value = "4G")]
+    pub(crate) max_memory: u64,
+    /// The longest time to work, in seconds
+    #[arg(long, global = true, value_name = "S", value_parser = seconds)]
+    pub(crate) max_time: Option<f64>,
+    /// Fail where the result is not proven to be within the tolerance
+    #[arg(long, global = true)]
+    pub(crate) strict: bool,
+    /// Say how long each step took
+    #[arg(long, global = true)]
+    pub(crate) timings: bool,
+    /// Say which way was chosen, and why
+    #[arg(long, global = true)]
+    pub(crate) explain: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Convert a file to another format or representation
+    Convert(ConvertArguments),
+    /// Say what a file holds
+    Info(InfoArguments),
+    /// Draw a picture of a file
+    Render(RenderArguments),
+    /// Make a ready shape
+    Make(MakeArguments),
+    /// List the file formats
+    Formats,
+    /// List the converters and the kinds that they join
+    Graph(GraphArguments),
+    /// Say what an error or warning code means
+    Explain(ExplainArguments),
+}
+
+/// How to convert, for every command that does.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct WayArguments {
+    /// How far the result may be from the input: a length (0.01), or per cent of the bounding box's diagonal (0.1%)
+    #[arg(long, value_name = "T", default_value = "0.1%", value_parser = tolerance, allow_hyphen_values = true)]
+    pub(crate) tolerance: Tolerance,
+    /// The converter to use; `shapeloom graph` lists them
+    #[arg(long, value_name = "NAME")]
+    pub(crate) method: Option<String>,
+    /// A kind that the way must pass through; `shapeloom graph` lists them
+    #[arg(long, value_name = "KIND")]
+    pub(crate) via: Option<String>,
+    /// An option of a converter on the way, as often as needed: key=value, or converter.key=value
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) settings: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ConvertArguments {
+    /// The file to read, or - for standard input
+    pub(crate) input: PathBuf,
+    /// The file to write, or - for standard output; missing folders are made
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) way: WayArguments,
+    /// The format of the input, if its content does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) from: Option<String>,
+    /// The format of the output, if its extension does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) to: Option<String>,
+    /// Also draw the result
+    #[arg(long, value_name = "OUT.png")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Also write the account of the conversion
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArguments {
+    /// The file to read, or - for standard input
+    pub(crate) input: PathBuf,
+    /// The format of the input, if its content does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) from: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArguments {
+    /// The file to read, or - for standard input
+    pub(crate) input: PathBuf,
+    /// The picture to write, or - for standard output; missing folders are made
+    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) way: WayArguments,
+    /// The format of the input, if its content does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) from: Option<String>,
+    /// The size of the picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x960")]
+    pub(crate) size: (u32, u32),
+    /// Where to look from, in degrees: around the up axis, and above the horizon
+    #[arg(long, value_name = "AZ,EL", value_parser = view, allow_hyphen_values = true)]
+    pub(crate) view: Option<(f64, f64)>,
+    /// How surfaces appear
+    #[arg(long, value_name = "MODE", value_parser = mode)]
+    pub(crate) mode: Option<String>,
+    /// Draw the sides of triangles over the surface
+    #[arg(long)]
+    pub(crate) wires: bool,
+    /// An option of the picture, as often as needed: key=value
+    #[arg(long = "picture-set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) picture_settings: Vec<(String, String)>,
+    /// Draw that many views all around, into OUT-000.png, OUT-001.png, ...
+    #[arg(long, value_name = "N", num_args = 0..=1, default_missing_value = "24",
+          value_parser = clap::value_parser!(u32).range(1..=999))]
+    pub(crate) turntable: Option<u32>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MakeArguments {
+    /// Which shape: tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, torus, cylinder, cone or grid
+    pub(crate) shape: String,
+    /// The file to write, or - for standard output; missing folders are made
+    pub(crate) output: PathBuf,
+    /// An option of the shape, as often as needed: key=value
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) settings: Vec<(String, String)>,
+    /// The format of the output, if its extension does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) to: Option<String>,
+    /// Also draw the shape
+    #[arg(long, value_name = "OUT.png")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GraphArguments {
+    /// Print the graph in the language of Graphviz
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) dot: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArguments {
+    /// The code, such as E-bpt-number; all of them if none is given
+    pub(crate) code: Option<String>,
+}
+
+fn bytes(text: &str) -> Result<u64, String> {
+    let expected = || format!("found \"{text}\", expected a whole number of bytes such as 500M or 4G");
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let shift = match text[digits.len()..].to_ascii_lowercase().trim_end_matches('b').trim_end_matches('i') {
+        "" => 0,
+        "k" => 10,
+        "m" => 20,
+        "g" => 30,
+        "t" => 40,
+        _ => return Err(expected()),
+    };
+    let number: u64 = digits.parse().map_err(|_| expected())?;
+    number.checked_mul(1 << shift).ok_or_else(expected)
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err(format!("found \"{text}\", expected a number of seconds above 0")),
+    }
+}
+
+fn tolerance(text: &str) -> Result<Tolerance, String> {
+    text.parse().map_err(|error: shapeloom_core::ToleranceError| error.to_string())
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
+        _ => Err(format!("found \"{text}\", expected key=value")),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let pixels = |part: &str| part.parse::<u32>().ok().filter(|n| (1..=16384).contains(n));
+    text.split_once('x')
+        .and_then(|(width, height)| Some((pixels(width)?, pixels(height)?)))
+        .ok_or_else(|| format!("found \"{text}\", expected WIDTHxHEIGHT such as 1280x960, each from 1 to 16384"))
+}
+
+fn view(text: &str) -> Result<(f64, f64), String> {
+    let angle = |part: &str| part.trim().parse::<f64>().ok().filter(|angle| angle.is_finite());
+    text.split_once(',')
+        .and_then(|(azimuth, elevation)| Some((angle(azimuth)?, angle(elevation)?)))
+        .ok_or_else(|| format!("found \"{text}\", expected two angles in degrees such as 30,20"))
+}
+
+fn mode(text: &str) -> Result<String, String> {
+    use shapeloom_core::ChoiceOption;
+    let names = shapeloom_render::Mode::NAMES;
+    if names.contains(&text) {
+        Ok(text.to_owned())
+    } else {
+        Err(format!("found \"{text}\", expected one of {}", names.join(", ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_grammar_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_of_memory_are_read() {
+        assert_eq!(bytes("4G"), Ok(4 << 30));
+        assert_eq!(bytes("64MiB"), Ok(64 << 20));
+        assert_eq!(bytes("1000"), Ok(1000));
+        for wrong in ["", "G", "-1", "4X", "99999999999T", "1.5G"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! `convert`: any file to any file.
+
+use std::path::Path;
+
+use serde_json::json;
+use shapeloom_convert::{Conversion, Job, Wish, convert_shape};
+use shapeloom_core::{Category, Deviation, Report};
+use shapeloom_io::{Format, WriteContext, format_by_id, format_for_output, write};
+use shapeloom_shape::{Kind, Shape};
+
+use super::draw;
+use crate::account;
+use crate::arguments::{ConvertArguments, WayArguments};
+use crate::failure::Failure;
+use crate::input::{self, is_stream};
+use crate::output::{Output, check_apart, check_free, stage_or_stream};
+use crate::session::Session;
+
+pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Result<(), Failure> {
+    let format = output_format(&arguments.output, arguments.to.as_deref())?;
+    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let delivery = Delivery {
+        output: &arguments.output,
+        format,
+        picture: arguments.picture.as_deref(),
+        report: arguments.report.as_deref(),
+        force: arguments.force,
+    };
+    delivery.check(session)?;
+    let wish = wish(&arguments.way, format.kinds)?;
+    let tolerance = arguments.way.tolerance.resolve(input.read.shape.bounds().diagonal())?;
+    let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
+    let source = json!({
+        "name": input.name, "format": input.format.id, "bytes": input.bytes,
+        "findings": account::findings(&input.read.findings), "losses": account::losses(&input.read.losses),
+    });
+    delivery.deliver(source, &input.read.shape, &job, session)
+}
+
+/// The format to write: the one named, else by extension.
+pub(crate) fn output_format(path: &Path, to: Option<&str>) -> Result<&'static Format, Failure> {
+    let format = match to {
+        Some(id) => format_by_id(id)?,
+        None if is_stream(path) => {
+            let message = "standard output: found no format, expected one with --to";
+            return Err(Failure::usage("E-usage-format", message));
+        }
+        None => format_for_output(&path.display().to_string()).map_err(|error| Failure::from(error).about(path))?,
+    };
+    if format.writes.is_none() {
+        return Err(Failure::Own {
+            code: "E-output-format",
+            category: Category::Unsupported,
+            message: format!("{}: {} cannot be written yet", path.display(), format.name),
+            advice: Some("`shapeloom formats` lists what can".into()),
+        });
+    }
+    Ok(format)
+}
+
+/// What a way must do to end in one of these kinds.
+pub(crate) fn wish(way: &WayArguments, kinds: &[Kind]) -> Result<Wish, Failure> {
+    let via = match &way.via {
+        Some(name) => Some(Kind::from_name(name).ok_or_else(|| {
+            let known: Vec<&str> = Kind::ALL.into_iter().map(Kind::name).collect();
+            Failure::usage("E-usage-kind", format!("found kind \"{name}\", expected one of {}", known.join(", ")))
+        })?),
+        None => None,
+    };
+    Ok(Wish { targets: kinds.to_vec(), method: way.method.clone(), via })
+}
+
+/// Where a result goes, in which forms.
+pub(crate) struct Delivery<'a> {
+    pub(crate) output: &'a Path,
+    pub(crate) format: &'static Format,
+    pub(crate) picture: Option<&'a Path>,
+    pub(crate) report: Option<&'a Path>,
+    pub(crate) force: bool,
+}
+
+impl Delivery<'_> {
+    /// Refuses outputs that cannot be, before any work is done.
+    pub(crate) fn check(&self, session: &Session<'_>) -> Result<(), Failure> {
+        let paths: Vec<&Path> = [Some(self.output), self.picture, self.report].into_iter().flatten().collect();
+        check_apart(&paths)?;
+        if session.globals.json && paths.iter().any(|path| is_stream(path)) {
+            let message = "--json and an output of - both want standard output: expected one of them";
+            return Err(Failure::usage("E-usage-outputs", message));
+        }
+        paths.into_iter().try_for_each(|path| check_free(path, self.force))
+    }
+
+    /// Converts a shape and writes everything, or nothing.
+    pub(crate) fn deliver(
+        &self,
+        source: serde_json::Value,
+        shape: &Shape,
+        job: &Job,
+        session: &mut Session<'_>,
+    ) -> Result<(), Failure> {
+        if session.globals.explain {
+            explain(shape, job, session)?;
+        }
+        session.stage("converting");
+        let conversion = convert_shape(shape, job, &session.exec())?;
+        let mut written = None;
+        let exec = session.exec();
+        session.stage("writing");
+        let strict = session.globals.strict;
+        let main = stage_or_stream(self.output, self.force, session, |out| {
+            let report = write(&conversion.shape, self.format, &WriteContext { exec }, out)?;
+            if strict {
+                check_strict(conversion.deviation.then(report.deviation), job.tolerance)?;
+            }
+            written = Some(report);
+            Ok(())
+        })?;
+        let written = written.unwrap_or_else(|| Report::exact("write", ""));
+        let deviation = conversion.deviation.then(written.deviation);
+        let account = json!({
+            "schema": "shapeloom.convert/1",
+            "input": source,
+            "output": { "name": self.output.display().to_string(), "format": self.format.id },
+            "tolerance": account::number(job.tolerance),
+            "steps": account::steps(&conversion, session.globals.timings),
+            "writing": account::report(&written),
+            "deviation": account::deviation(deviation),
+            "within_tolerance": deviation.is_within(job.tolerance),
+        });
+        let mut staged: Vec<Output> = main.into_iter().collect();
+        if let Some(path) = self.picture {
+            session.stage("drawing");
+            let image = draw::picture_of(&conversion.shape, job.tolerance, &draw::Look::of_session(session), session)?;
+            let bytes = image.to_png()?;
+            let picture = stage_or_stream(path, self.force, session, |out| {
+                out.write_all(&bytes).map_err(|error| Failure::write(path, &error))
+            })?;
+            staged.extend(picture);
+        }
+        if let Some(path) = self.report {
+            let report = stage_or_stream(path, self.force, session, |out| {
+                writeln!(out, "{account:#}").map_err(|error| Failure::write(path, &error))
+            })?;
+            staged.extend(report);
+        }
+        staged.into_iter().try_for_each(Output::commit)?;
+        self.tell(&conversion, &written, deviation, session);
+        if session.globals.json {
+            session.print_json(&account)?;
+        }
+        Ok(())
+    }
+
+    fn tell(
+        &self,
+        conversion: &Conversion,
+        written: &Report,
+        deviation: Deviation,
+        session: &mut Session<'_>,
+    ) {
+        for (index, step) in conversion.steps.iter().enumerate() {
+            let seconds = session.globals.timings.then(|| conversion.timings.seconds[index]);
+            session.say(account::step_words(step, seconds));
+            if session.globals.verbose {
+                for (name, value) in &step.options {
+                    session.say(format_args!("  {name} = {value}"));
+                }
+                session.say(format_args!("  by {}", step.report.basis));
+            }
+            session.say_findings(&step.report.findings);
+            for loss in &step.report.losses {
+                session.say(format_args!("lost: {loss}"));
+            }
+        }
+        session.say_findings(&written.findings);
+        for loss in &written.losses {
+            session.say(format_args!("lost: {loss}"));
+        }
+        let mut names = vec![self.output.display().to_string()];
+        names.extend(self.picture.map(|path| path.display().to_string()));
+        names.extend(self.report.map(|path| path.display().to_string()));
+        session.say(format_args!("wrote {}; error {deviation}", names.join(", ")));
+    }
+}
+
+/// Under `--strict` a result that is not proven to be within the tolerance is none.
+fn check_strict(deviation: Deviation, tolerance: f64) -> Result<(), Failure> {
+    if deviation.is_within(tolerance) {
+        return Ok(());
+    }
+    Err(Failure::Own {
+        code: "E-strict-tolerance",
+        category: Category::Failed,
+        message: format!("found an error {deviation}, expected one proven to be within {tolerance}"),
+        advice: Some("leave out --strict to accept it".into()),
+    })
+}
+
+/// Says which way each part takes.
+fn explain(shape: &Shape, job: &Job, session: &mut Session<'_>) -> Result<(), Failure> {
+    let targets: Vec<&str> = job.wish.targets.iter().map(|kind| kind.name()).collect();
+    for (index, part) in shape.parts.iter().enumerate() {
+        let kind = part.geometry.kind();
+        let plan = shapeloom_convert::plan(kind, &job.wish)?;
+        let steps: Vec<&str> = plan.steps.iter().map(|step| step.name).collect();
+        let way = if steps.is_empty() { "as it is".to_owned() } else { format!("by {}", steps.join(", then ")) };
+        session.say(format_args!(
+            "part {index}: {kind} {way}: the shortest way to {}, tolerance {}",
+            targets.join(" or "),
+            job.tolerance
+        ));
+    }
+    Ok(())
+}

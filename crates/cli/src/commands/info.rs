@@ -1,0 +1,232 @@
+//! `info`: what a file holds.
+
+use std::collections::BTreeSet;
+
+use serde_json::{Map, Value, json};
+use shapeloom_core::Exec;
+use shapeloom_mesh::{Attributes, Domain, MeshAttributes, PolyMesh, TriMesh};
+use shapeloom_shape::{Geometry, Part, Shape};
+
+use crate::account;
+use crate::arguments::InfoArguments;
+use crate::failure::Failure;
+use crate::input;
+use crate::session::Session;
+
+pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Result<(), Failure> {
+    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let mut object = describe(&input.read.shape, &session.exec())?;
+    object.insert("schema".into(), json!("shapeloom.info/1"));
+    object.insert("file".into(), json!(input.name));
+    object.insert("format".into(), json!(input.format.id));
+    object.insert("bytes".into(), json!(input.bytes));
+    object.insert("findings".into(), account::findings(&input.read.findings));
+    object.insert("losses".into(), account::losses(&input.read.losses));
+    if session.globals.json {
+        session.print_json(&Value::Object(object))
+    } else {
+        session.print(words(&object))
+    }
+}
+
+/// Everything about a shape as one object: counts are sums over the parts as they are placed.
+fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
+    let mut object = Map::new();
+    let kinds = shape.kinds();
+    let kind = match kinds.as_slice() {
+        [only] => only.name(),
+        [] => "empty",
+        _ => "mixed",
+    };
+    object.insert("kind".into(), json!(kind));
+    let mut totals = Totals::default();
+    let mut parts = Vec::new();
+    for part in &shape.parts {
+        exec.check()?;
+        parts.push(totals.add(part, shape, exec)?);
+    }
+    totals.tell(&mut object);
+    object.insert("parts".into(), Value::Array(parts));
+    let bounds = shape.bounds();
+    if !bounds.is_empty() {
+        object.insert("bounds".into(), account::bounds(&bounds));
+        object.insert("diagonal".into(), account::number(bounds.diagonal()));
+    }
+    object.insert("memory_bytes".into(), json!(shape.memory_bytes()));
+    if let Some(up) = shape.up {
+        object.insert("up".into(), json!(up.name()));
+    }
+    if let Some(units) = shape.units {
+        object.insert("unit_in_meters".into(), account::number(units.meters()));
+    }
+    let materials: Vec<&str> = shape.materials.iter().map(|material| material.name.as_str()).collect();
+    object.insert("materials".into(), json!(materials));
+    Ok(object)
+}
+
+/// Counts that add up over parts; those of kinds that do not occur stay away.
+#[derive(Default)]
+struct Totals {
+    counts: Map<String, Value>,
+    area: Option<f64>,
+    volume: Option<f64>,
+    attributes: BTreeSet<(String, String, usize, &'static str)>,
+}
+
+impl Totals {
+    fn count(&mut self, part: &mut Map<String, Value>, name: &str, found: usize) {
+        part.insert(name.into(), json!(found));
+        let before = self.counts.get(name).and_then(Value::as_u64).unwrap_or(0);
+        self.counts.insert(name.into(), json!(before + found as u64));
+    }
+
+    fn attributes(&mut self, domain: Domain, attributes: &Attributes) {
+        for column in attributes {
+            let (name, kind) = (column.name().to_owned(), column.values().type_name());
+            self.attributes.insert((domain.to_string(), name, column.width(), kind));
+        }
+    }
+
+    fn mesh_attributes(&mut self, attributes: &MeshAttributes) {
+        for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
+            self.attributes(domain, attributes.of(domain));
+        }
+    }
+
+    fn surface(&mut self, part: &mut Map<String, Value>, area: f64, volume: f64) {
+        part.insert("area".into(), account::number(area));
+        part.insert("volume".into(), account::number(volume));
+        self.area = Some(self.area.unwrap_or(0.0) + area);
+        self.volume = Some(self.volume.unwrap_or(0.0) + volume);
+    }
+
+    fn add(&mut self, part: &Part, shape: &Shape, exec: &Exec) -> Result<Value, Failure> {
+        let mut object = Map::new();
+        object.insert("name".into(), json!(part.name));
+        object.insert("kind".into(), json!(part.geometry.kind().name()));
+        if let Some(material) = part.material.and_then(|index| shape.materials.get(index as usize)) {
+            object.insert("material".into(), json!(material.name));
+        }
+        let placed = part.placed();
+        match &*placed {
+            Geometry::TriMesh(mesh) => {
+                self.count(&mut object, "vertices", mesh.positions().len());
+                self.count(&mut object, "edges", triangle_edges(mesh, exec)?);
+                self.count(&mut object, "faces", mesh.triangles().len());
+                self.count(&mut object, "triangles", mesh.triangles().len());
+                self.surface(&mut object, mesh.area(), mesh.volume());
+                self.mesh_attributes(mesh.attributes());
+            }
+            Geometry::PolyMesh(mesh) => {
+                self.count(&mut object, "vertices", mesh.positions().len());
+                self.count(&mut object, "edges", polygon_edges(mesh, exec)?);
+                self.count(&mut object, "faces", mesh.face_count());
+                self.count(&mut object, "triangles", mesh.triangle_count());
+                self.surface(&mut object, mesh.area(), mesh.volume());
+                self.mesh_attributes(mesh.attributes());
+            }
+            Geometry::PointCloud(cloud) => {
+                self.count(&mut object, "points", cloud.positions().len());
+                self.attributes(Domain::Vertex, cloud.attributes());
+            }
+            Geometry::Polyline(line) => {
+                self.count(&mut object, "points", line.points().len());
+                self.count(&mut object, "segments", line.segments().count());
+                object.insert("length".into(), account::number(line.length()));
+                object.insert("closed".into(), json!(line.is_closed()));
+                self.attributes(Domain::Vertex, line.attributes());
+            }
+            Geometry::HeightField(field) => {
+                self.count(&mut object, "samples", field.heights().len());
+                object.insert("columns".into(), json!(field.columns()));
+                object.insert("rows".into(), json!(field.rows()));
+            }
+            Geometry::BezierCurve(curve) => {
+                self.count(&mut object, "control_points", curve.control_points().len());
+                object.insert("degree".into(), json!(curve.degree()));
+            }
+            Geometry::BezierSurface(surface) => {
+                self.count(&mut object, "patches", surface.patches.len());
+                self.count(&mut object, "control_points", surface.control_point_count());
+                let degrees: BTreeSet<(usize, usize)> =
+                    surface.patches.iter().map(|patch| (patch.degree_u(), patch.degree_v())).collect();
+                object.insert("degrees".into(), degrees.into_iter().map(|(u, v)| json!([u, v])).collect());
+            }
+            _ => {}
+        }
+        Ok(Value::Object(object))
+    }
+
+    fn tell(self, object: &mut Map<String, Value>) {
+        object.extend(self.counts);
+        if let (Some(area), Some(volume)) = (self.area, self.volume) {
+            object.insert("area".into(), account::number(area));
+            object.insert("volume".into(), account::number(volume));
+        }
+        let one = |(domain, name, width, kind): (String, String, usize, &str)| {
+            json!({ "domain": domain, "name": name, "width": width, "type": kind })
+        };
+        object.insert("attributes".into(), self.attributes.into_iter().map(one).collect());
+    }
+}
+
+fn distinct(mut edges: Vec<[u32; 2]>) -> usize {
+    edges.sort_unstable();
+    edges.dedup();
+    edges.len()
+}
+
+fn rising(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+fn triangle_edges(mesh: &TriMesh, exec: &Exec) -> Result<usize, Failure> {
+    let _memory = exec.reserve_elements(mesh.triangles().len() as u64 * 3, 8)?;
+    let sides = mesh.triangles().iter().flat_map(|&[a, b, c]| [rising(a, b), rising(b, c), rising(c, a)]);
+    Ok(distinct(sides.filter(|[a, b]| a != b).collect()))
+}
+
+fn polygon_edges(mesh: &PolyMesh, exec: &Exec) -> Result<usize, Failure> {
+    let _memory = exec.reserve_elements(mesh.wedge_vertices().len() as u64, 8)?;
+    let sides = mesh.faces().flat_map(|face| {
+        (0..face.len()).map(move |k| rising(face[k], face[(k + 1) % face.len()]))
+    });
+    Ok(distinct(sides.filter(|[a, b]| a != b).collect()))
+}
+
+/// The object in lines of words: single values first, then what has a line each.
+fn words(object: &Map<String, Value>) -> String {
+    let text = |value: &Value| match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    let mut lines: Vec<String> = ["file", "format", "kind"]
+        .into_iter()
+        .filter_map(|key| Some(format!("{key}: {}", text(object.get(key)?))))
+        .collect();
+    for (key, value) in object.iter().filter(|(_, value)| !value.is_array()) {
+        if ["schema", "file", "format", "kind"].contains(&key.as_str()) {
+            continue;
+        }
+        let value = match value {
+            Value::Object(fields) => {
+                fields.iter().map(|(name, value)| format!("{name} {value}")).collect::<Vec<_>>().join(", ")
+            }
+            other => text(other),
+        };
+        lines.push(format!("{}: {value}", key.replace('_', " ")));
+    }
+    for (key, value) in object.iter().filter_map(|(key, value)| Some((key, value.as_array()?))) {
+        for item in value {
+            let item = match item {
+                Value::Object(fields) => {
+                    let shown = fields.iter().filter(|(_, value)| **value != json!(""));
+                    shown.map(|(name, value)| format!("{name} {}", text(value))).collect::<Vec<_>>().join(", ")
+                }
+                other => text(other),
+            };
+            lines.push(format!("{}: {item}", key.trim_end_matches('s')));
+        }
+    }
+    lines.join("\n")
+}

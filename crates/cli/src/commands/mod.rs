@@ -1,0 +1,10 @@
+//! The commands, a file each.
+
+pub(crate) mod convert;
+pub(crate) mod draw;
+pub(crate) mod explain;
+pub(crate) mod formats;
+pub(crate) mod graph;
+pub(crate) mod info;
+pub(crate) mod make;
+pub(crate) mod render;

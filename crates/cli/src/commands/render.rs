@@ -1,0 +1,84 @@
+//! `render`: pictures with no display.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use shapeloom_convert::Job;
+use shapeloom_core::{Camera, Options};
+use shapeloom_render::Picture;
+use shapeloom_shape::Kind;
+
+use super::convert::wish;
+use super::draw::{Look, Stage};
+use crate::arguments::RenderArguments;
+use crate::failure::Failure;
+use crate::input::{self, is_stream};
+use crate::output::{Output, check_free, stage_or_stream};
+use crate::session::Session;
+
+pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Result<(), Failure> {
+    let look = look(arguments, session)?;
+    let paths = match arguments.turntable {
+        Some(_) if is_stream(&arguments.output) => {
+            let message = "--turntable draws many pictures: expected a file name, found standard output";
+            return Err(Failure::usage("E-usage-outputs", message));
+        }
+        Some(frames) => (0..frames).map(|frame| numbered(&arguments.output, frame)).collect(),
+        None => vec![arguments.output.clone()],
+    };
+    if session.globals.json && is_stream(&arguments.output) {
+        let message = "--json and an output of - both want standard output: expected one of them";
+        return Err(Failure::usage("E-usage-outputs", message));
+    }
+    paths.iter().try_for_each(|path| check_free(path, arguments.force))?;
+    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let tolerance = arguments.way.tolerance.resolve(input.read.shape.bounds().diagonal())?;
+    let job =
+        Job { wish: wish(&arguments.way, &[Kind::TriMesh])?, tolerance, settings: arguments.way.settings.clone() };
+    session.stage("converting");
+    let stage = Stage::new(&input.read.shape, &job, session)?;
+    let cameras: Vec<Camera> = match arguments.turntable {
+        Some(frames) => stage.turntable(&look, frames)?,
+        None => vec![stage.camera(&look)?],
+    };
+    session.stage("drawing");
+    let mut staged = Vec::new();
+    for (path, camera) in paths.iter().zip(&cameras) {
+        let bytes = stage.draw(&look, camera, session)?.to_png()?;
+        staged.extend(stage_or_stream(path, arguments.force, session, |out| {
+            out.write_all(&bytes).map_err(|error| Failure::write(path, &error))
+        })?);
+    }
+    staged.into_iter().try_for_each(Output::commit)?;
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    session.say(format_args!("wrote {}", names.join(", ")));
+    if session.globals.json {
+        let object = json!({
+            "schema": "shapeloom.render/1",
+            "pictures": names,
+            "width": look.picture.width,
+            "height": look.picture.height,
+        });
+        session.print_json(&object)?;
+    }
+    Ok(())
+}
+
+fn look(arguments: &RenderArguments, session: &Session<'_>) -> Result<Look, Failure> {
+    let (width, height) = arguments.size;
+    let mut picture = Picture { width, height, wires: arguments.wires, seed: session.globals.seed, ..Picture::new() };
+    if let Some(mode) = &arguments.mode {
+        picture.set("mode", mode)?;
+    }
+    for (key, value) in &arguments.picture_settings {
+        picture.set(key, value)?;
+    }
+    Ok(Look { picture, view: arguments.view })
+}
+
+/// `out.png` as `out-007.png`.
+fn numbered(path: &Path, frame: u32) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().map_or("png".into(), |extension| extension.to_string_lossy());
+    path.with_file_name(format!("{stem}-{frame:03}.{extension}"))
+}

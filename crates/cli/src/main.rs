@@ -1,0 +1,7 @@
+//! The program `shapeloom`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(shapeloom_cli::run_process())
+}
