@@ -6,13 +6,13 @@ use shapeloom_core::glam::DVec3;
 use crate::surface_point::SurfacePoint;
 
 /// Light of the key on a surface that faces it.
-const KEY: DVec3 = DVec3::new(0.98, 0.93, 0.86);
+const KEY: DVec3 = DVec3::new(1.16, 1.09, 1.00);
 /// Light of the fill.
 const FILL: DVec3 = DVec3::new(0.13, 0.15, 0.18);
 /// Light from above, on a surface that faces up.
-const CEILING: DVec3 = DVec3::new(0.44, 0.48, 0.54);
+const CEILING: DVec3 = DVec3::new(0.36, 0.40, 0.46);
 /// Light from below.
-const FLOOR: DVec3 = DVec3::new(0.24, 0.22, 0.20);
+const FLOOR: DVec3 = DVec3::new(0.17, 0.155, 0.14);
 /// The slope of the cone in which the key's surface is seen: soft shadows.
 pub(crate) const KEY_SLOPE: f64 = 0.16;
 
@@ -61,13 +61,13 @@ impl Lights {
             let fresnel = 0.04 + 0.96 * (1.0 - facing).powi(5);
             let mirrored = normal * (2.0 * facing) - point.to_viewer;
             let height = (0.5 + 0.6 * mirrored.dot(self.up)).clamp(0.0, 1.0);
-            let seen = FLOOR + (CEILING * 1.6 - FLOOR) * (height * height * (3.0 - 2.0 * height));
+            let seen = FLOOR + (CEILING * 2.2 - FLOOR) * (height * height * (3.0 - 2.0 * height));
             // The room's mirror image fades toward the outline, where a real one would show what stands behind.
             parts.ambient += seen * (fresnel.min(0.35) * 0.9);
             let half = (self.key + point.to_viewer).normalize_or_zero();
             let along = normal.dot(half).max(0.0);
             // Blinn 1977 with two widths: a sharp highlight in a soft bloom.
-            let highlight = 0.42 * along.powi(220) + 0.09 * along.powi(28);
+            let highlight = 0.75 * along.powi(260) + 0.10 * along.powi(24);
             parts.key += KEY * (highlight * (facing_key * 6.0).min(1.0));
         }
         parts

@@ -1,18 +1,13 @@
-//! Sample places that depend on pixel, sample and seed alone.
+//! Evenly spread directions that depend on their number and a seed alone.
 
-use shapeloom_core::Frame;
 use shapeloom_core::glam::{DVec2, DVec3};
 
-/// A well-mixed number of three (one step of a splitmix64 each).
-pub(crate) fn hash(x: u32, y: u32, seed: u32) -> u64 {
-    let mut state = u64::from(x) << 32 | u64::from(y);
-    for word in [0x9e37_79b9_7f4a_7c15, u64::from(seed)] {
-        state = state.wrapping_add(word);
-        state = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        state = (state ^ state >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        state ^= state >> 31;
-    }
-    state
+/// A well-mixed number of two (splitmix64).
+pub(crate) fn hash(x: u32, y: u32) -> u64 {
+    let mut state = (u64::from(x) << 32 | u64::from(y)).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    state = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    state = (state ^ state >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    state ^ state >> 31
 }
 
 /// A shift of the unit square from a hash.
@@ -29,20 +24,18 @@ pub(crate) fn spread(index: u32, shift: DVec2) -> DVec2 {
     point - point.floor()
 }
 
-/// The direction around `normal` with cosine density for a point of the unit square.
-pub(crate) fn cosine_direction(normal: DVec3, square: DVec2) -> DVec3 {
+/// The direction around the third axis with cosine density for a point of the unit square.
+pub(crate) fn cosine_direction(square: DVec2) -> DVec3 {
+    let (sine, cosine) = (std::f64::consts::TAU * square.y).sin_cos();
     let radius = square.x.sqrt();
-    let turn = std::f64::consts::TAU * square.y;
-    let [x, y, z] = Frame::with_normal(DVec3::ZERO, normal).axes();
-    x * (radius * turn.cos()) + y * (radius * turn.sin()) + z * (1.0 - square.x).max(0.0).sqrt()
+    DVec3::new(radius * cosine, radius * sine, (1.0 - square.x).max(0.0).sqrt())
 }
 
-/// A direction in the cone of half angle `atan(spread)` around a unit vector.
-pub(crate) fn cone_direction(axis: DVec3, slope: f64, square: DVec2) -> DVec3 {
+/// The direction around the third axis, evenly in a cone of this slope, for a point of the unit square.
+pub(crate) fn cone_direction(slope: f64, square: DVec2) -> DVec3 {
+    let (sine, cosine) = (std::f64::consts::TAU * square.y).sin_cos();
     let radius = slope * square.x.sqrt();
-    let turn = std::f64::consts::TAU * square.y;
-    let [x, y, z] = Frame::with_normal(DVec3::ZERO, axis).axes();
-    (x * (radius * turn.cos()) + y * (radius * turn.sin()) + z).normalize()
+    DVec3::new(radius * cosine, radius * sine, 1.0).normalize()
 }
 
 #[cfg(test)]
@@ -51,23 +44,28 @@ mod tests {
 
     #[test]
     fn cosine_directions_have_their_moments() {
-        let normal = DVec3::new(0.48, -0.6, 0.64);
         let count = 4096;
-        let sum: DVec3 = (0..count).map(|i| cosine_direction(normal, spread(i, DVec2::new(0.3, 0.8)))).sum();
+        let sum: DVec3 = (0..count).map(|i| cosine_direction(spread(i, DVec2::new(0.3, 0.8)))).sum();
         // The mean of a cosine-weighted direction is 2/3 of the normal.
-        assert!((sum / f64::from(count) - normal * (2.0 / 3.0)).length() < 1e-2);
+        assert!((sum / f64::from(count) - DVec3::Z * (2.0 / 3.0)).length() < 1e-2);
         for i in 0..100 {
-            let direction = cosine_direction(normal, shift(hash(i, 7, 1)));
-            assert!((direction.length() - 1.0).abs() < 1e-12 && direction.dot(normal) >= -1e-12);
-            assert!(cone_direction(normal, 0.1, shift(hash(i, 3, 1))).dot(normal) >= 0.995);
+            let direction = cosine_direction(shift(hash(i, 7)));
+            assert!((direction.length() - 1.0).abs() < 1e-12 && direction.z >= 0.0);
+            assert!(cone_direction(0.1, shift(hash(i, 3))).z >= 0.995);
         }
     }
 
     #[test]
-    fn sixteen_samples_fall_into_sixteen_strips() {
-        let mut strips: Vec<u32> = (0..16).map(|i| (spread(i, DVec2::ZERO).x * 16.0) as u32).collect();
-        strips.sort_unstable();
-        strips.dedup();
-        assert!(strips.len() >= 12, "{strips:?}");
+    fn places_keep_apart() {
+        for count in [16, 49 * 16] {
+            let places: Vec<DVec2> = (0..count).map(|i| spread(i, DVec2::new(0.3, 0.8))).collect();
+            let apart = |a: &DVec2, b: &DVec2| {
+                let d = (*a - *b).abs();
+                d.min(DVec2::ONE - d).length()
+            };
+            let pairs = places.iter().enumerate().flat_map(|(i, a)| places[..i].iter().map(move |b| apart(a, b)));
+            // A square lattice has 1 / sqrt(count); random places have almost 0.
+            assert!(pairs.fold(1.0, f64::min) > 0.5 / f64::from(count).sqrt());
+        }
     }
 }

@@ -22,12 +22,12 @@ pub struct SceneMesh {
 }
 
 impl SceneMesh {
-    /// A pale porcelain that shows form well.
-    pub const PORCELAIN: [f32; 3] = [0.62, 0.66, 0.70];
+    /// A glazed blue that shows form well, on light and dark.
+    pub const GLAZE: [f32; 3] = [0.075, 0.24, 0.48];
 
-    /// Triangles in porcelain, with facets and all sides.
+    /// Triangles in [`SceneMesh::GLAZE`], with facets and all sides.
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
-        Self { positions, triangles, normals: None, edges: None, color: Self::PORCELAIN }
+        Self { positions, triangles, normals: None, edges: None, color: Self::GLAZE }
     }
 }
 
@@ -70,7 +70,7 @@ impl Scene {
                     return Err(RenderError::Index { mesh, triangle, found, positions: surface.positions.len() });
                 };
                 // Squares of lengths must stay finite.
-                if !(position.abs().max_element() < 1e150) || position.is_nan() {
+                if !position.is_finite() || position.abs().max_element() >= 1e150 {
                     return Err(RenderError::NotFinite { mesh, position: found, found: position });
                 }
             }

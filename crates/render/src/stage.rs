@@ -16,6 +16,8 @@ pub(crate) struct Stage<'a> {
     /// The first triangle of each mesh.
     starts: Vec<u32>,
     pub bounds: Aabb,
+    center: DVec3,
+    radius_squared: f64,
     /// How far rays start off the surface.
     pub lift: f64,
     _memory: Reservation,
@@ -40,7 +42,18 @@ impl<'a> Stage<'a> {
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
         // Far from the origin the rounding of coordinates, not the size of the shape, is what must be passed.
         let lift = (bounds.diagonal() * 1e-6).max(reach * 1e-14);
-        Ok(Self { bvh, positions, triangles, meshes: &scene.surfaces, starts, bounds, lift, _memory: memory })
+        Ok(Self {
+            bvh,
+            positions,
+            triangles,
+            meshes: &scene.surfaces,
+            starts,
+            bounds,
+            center: bounds.center(),
+            radius_squared: (bounds.diagonal() * 0.51).powi(2),
+            lift,
+            _memory: memory,
+        })
     }
 
     /// The first hit of a ray from the camera.
@@ -49,7 +62,16 @@ impl<'a> Stage<'a> {
     }
 
     /// Whether something stands within `reach` of `point` toward `direction`.
+    ///
+    /// `direction` is a unit vector.
     pub fn shadowed(&self, point: DVec3, direction: DVec3, reach: f64) -> bool {
+        // Most rays from the ground pass the ball around the shape; a little more than it, for rounding.
+        let to_center = self.center - point;
+        let (along, far) = (to_center.dot(direction), to_center.length_squared());
+        let outside = far > self.radius_squared;
+        if outside && (along < 0.0 || far - along * along > self.radius_squared) {
+            return false;
+        }
         Ray::new(point, direction).is_ok_and(|ray| self.bvh.any_hit(&ray.within(Interval::new(0.0, reach))))
     }
 

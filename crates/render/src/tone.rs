@@ -27,8 +27,8 @@ mod tests {
 
     #[test]
     fn known_bytes() {
-        // IEC 61966-2-1: half the code value is 21.4% of the light.
-        assert_eq!([0.0, 0.214_041, 1.0, 7.0, -1.0, f64::NAN].map(srgb), [0, 128, 255, 255, 0, 0]);
+        // IEC 61966-2-1: code 128 stands for 21.6% of the light.
+        assert_eq!([0.0, 0.215_860_5, 1.0, 7.0, -1.0, f64::NAN].map(srgb), [0, 128, 255, 255, 0, 0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use shapeloom_core::{Aabb, Camera, CameraError, Projection};
 /// The vertical angle of view: long enough a lens that forms are not distorted.
 const FOV_Y: f64 = 0.45;
 /// The part of the half picture that stays free on each side.
-const MARGIN: f64 = 0.07;
+const MARGIN: f64 = 0.03;
 const AZIMUTH: f64 = 0.56;
 const ELEVATION: f64 = 0.40;
 

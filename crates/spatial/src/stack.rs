@@ -8,7 +8,7 @@ pub(crate) struct Stack<T> {
 }
 
 /// Four-wide trees over a million primitives keep under 40 entries open.
-const NEAR: usize = 64;
+const NEAR: usize = 48;
 
 impl<T: Copy> Stack<T> {
     pub fn new(filler: T) -> Self {
