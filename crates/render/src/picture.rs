@@ -46,7 +46,7 @@ options! {
     /// Primary rays are exact: no gap shows between triangles that share corners. Shadow rays are few and smoothed over
     /// neighbouring pixels. The same options give the same bytes for any number of threads. Cost: about
     /// `width * height * samples²` rays, and `ambient_rays + shadow_rays` more for each pixel that shows the shape or
-    /// the ground near it. Memory: 120 bytes a pixel for 256 rows, 4 bytes a pixel for the others, and the hierarchy.
+    /// the ground near it. Memory: 128 bytes a pixel for 256 rows, 4 bytes a pixel for the others, and the hierarchy.
     pub struct Picture("picture") {
         required {}
         optional {
@@ -97,12 +97,24 @@ impl Picture {
     /// An option out of range, an empty or malformed scene, an `up` without a length, too little memory in the budget,
     /// or the reason to stop.
     pub fn draw(&self, scene: &Scene, camera: &Camera, up: DVec3, exec: &Exec) -> Result<Image, RenderError> {
+        self.draw_in_bands(scene, camera, up, exec, BAND)
+    }
+
+    /// Draws with `band` rows in memory at a time; the picture does not depend on it.
+    fn draw_in_bands(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        up: DVec3,
+        exec: &Exec,
+        band_height: usize,
+    ) -> Result<Image, RenderError> {
         self.validate()?;
         exec.check()?;
         let up = up.try_normalize().ok_or(RenderError::Up { found: up })?;
         let (width, height) = (self.width as usize, self.height as usize);
         let _image_memory = exec.reserve_elements((width * height) as u64, size_of::<[u8; 4]>())?;
-        let band_rows = BAND.min(height) + 2 * REACH;
+        let band_rows = band_height.min(height) + 2 * REACH;
         let _band_memory = exec.reserve_elements((width * band_rows) as u64, size_of::<Pixel>())?;
         let rays = u64::from(TILE * TILE) * u64::from(self.ambient_rays + self.shadow_rays);
         let _ray_memory = exec.reserve_elements(rays, size_of::<DVec3>())?;
@@ -112,10 +124,11 @@ impl Picture {
         let mut pixels = vec![Pixel::default(); width * band_rows.min(height)];
         let done = AtomicUsize::new(0);
         let rest = exec.part(0.1, 1.0);
-        for (band, out) in bytes.chunks_mut(BAND * width).enumerate() {
+        for (band, out) in bytes.chunks_mut(band_height * width).enumerate() {
             // The filter looks beyond the band; rows are drawn twice there.
-            let first = (band * BAND).saturating_sub(REACH);
-            let last = (band * BAND + out.len() / width + REACH).min(height);
+            let top = band * band_height;
+            let first = top.saturating_sub(REACH);
+            let last = (top + out.len() / width + REACH).min(height);
             let pixels = &mut pixels[..(last - first) * width];
             parallel::fill_chunks(exec, pixels, CHUNK, |start, part| {
                 for (i, pixel) in part.iter_mut().enumerate() {
@@ -127,7 +140,7 @@ impl Picture {
                 Ok::<(), RenderError>(())
             })?;
             let film = painter.film(pixels, width);
-            let offset = band * BAND - first;
+            let offset = top - first;
             parallel::fill_chunks(exec, out, CHUNK * 8, |start, part| {
                 for (i, bytes) in part.iter_mut().enumerate() {
                     let (x, y) = ((start + i) % width, offset + (start + i) / width);
@@ -483,7 +496,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_do_not_depend_on_threads_or_bands() {
+    fn bytes_do_not_depend_on_threads_and_bands() {
         let shape = scene(ball(16));
         let camera = sensible_camera(&shape.bounds(), DVec3::Z, 0.25).unwrap();
         // Taller than a band.
@@ -491,6 +504,10 @@ mod tests {
         let wanted = picture
             .draw(&shape, &camera, DVec3::Z, &Exec::default().with_threads(shapeloom_core::Threads::Sequential))
             .unwrap();
+        for band in [1, 7, 100, 290] {
+            let found = picture.draw_in_bands(&shape, &camera, DVec3::Z, &Exec::default(), band).unwrap();
+            assert!(found == wanted, "{band}");
+        }
         for threads in 1..=3 {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             assert!(pool.install(|| draw(&picture, &shape, &camera)) == wanted, "{threads}");

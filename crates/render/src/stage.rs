@@ -94,3 +94,41 @@ impl<'a> Stage<'a> {
         SurfacePoint::new(&self.corners(hit.element), normals, ray, hit)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{ball, scene, square};
+    use crate::sampling::{cosine_direction, hash, shift};
+
+    #[test]
+    fn shadows_are_those_of_all_triangles() {
+        let mut other = square();
+        other.positions.iter_mut().for_each(|p| *p = *p * 0.3 + DVec3::new(1.5, 0.0, 2.0));
+        let mut shape = scene(ball(8));
+        shape.surfaces.push(other);
+        let stage = Stage::new(&shape, &Exec::default()).unwrap();
+        let mut dark = 0;
+        for i in 0..4000 {
+            let [a, b, c] = [1, 2, 3].map(|stream| shift(hash(i, stream)));
+            let point = DVec3::new(a.x, a.y, b.x) * 8.0 - DVec3::splat(4.0);
+            let direction = cosine_direction(c) * if i % 2 == 0 { 1.0 } else { -1.0 };
+            let wanted = stage.bvh.any_hit(&Ray::new(point, direction).unwrap());
+            assert_eq!(stage.shadowed(point, direction, f64::INFINITY), wanted, "{point} {direction}");
+            dark += usize::from(wanted);
+        }
+        assert!(dark > 100, "{dark}");
+    }
+
+    #[test]
+    fn elements_belong_to_their_meshes() {
+        let mut shape = scene(square());
+        shape.surfaces.push(SceneMesh::new(vec![], vec![]));
+        shape.surfaces.push(SceneMesh { color: [1.0, 0.0, 0.0], ..square() });
+        let stage = Stage::new(&shape, &Exec::default()).unwrap();
+        let places: Vec<(f32, usize)> = (0..4).map(|i| stage.owner(i)).map(|(mesh, i)| (mesh.color[0], i)).collect();
+        let blue = SceneMesh::GLAZE[0];
+        assert_eq!(places, [(blue, 0), (blue, 1), (1.0, 0), (1.0, 1)]);
+        assert_eq!(stage.corners(3), stage.corners(1));
+    }
+}
