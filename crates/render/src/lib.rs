@@ -26,6 +26,7 @@ mod film;
 mod fixtures;
 mod image;
 mod light;
+mod painter;
 mod picture;
 mod sampling;
 mod scene;

@@ -160,8 +160,10 @@ mod tests {
     /// Each primitive stands in one leaf, and every box around it, up to the root, holds it.
     fn assert_sound(hierarchy: &Hierarchy, bounds: &[Bounds]) {
         let mut seen = vec![0; bounds.len()];
-        let mut open = vec![(0usize, [f32::MIN; 3], [f32::MAX; 3])];
-        while let Some((index, low, high)) = open.pop() {
+        let mut open = vec![(0usize, [f32::MIN; 3], [f32::MAX; 3], 0)];
+        while let Some((index, low, high, depth)) = open.pop() {
+            // A tree that merges one pair in a pass is a chain.
+            assert!(depth < 40, "a deep tree");
             let node = &hierarchy.nodes[index];
             for lane in 0..WIDTH {
                 let (min, max) = ([0, 1, 2].map(|a| node.sides[0][a][lane]), [0, 1, 2].map(|a| node.sides[1][a][lane]));
@@ -170,7 +172,7 @@ mod tests {
                 }
                 assert!((0..3).all(|a| min[a] >= low[a] && max[a] <= high[a]));
                 if node.count[lane] == 0 {
-                    open.push((node.first[lane] as usize, min, max));
+                    open.push((node.first[lane] as usize, min, max, depth + 1));
                 }
                 for place in node.first[lane]..node.first[lane] + node.count[lane] {
                     let primitive = hierarchy.order[place as usize] as usize;
@@ -187,7 +189,7 @@ mod tests {
         (0..count).map(|i| Bounds::outward(at(i), at(i).map(|x| x + size))).collect()
     }
 
-    /// A quadratic build would need minutes for these.
+    /// A quadratic build would make chains of these.
     #[test]
     fn rows_grids_and_heaps_of_equal_boxes_make_sound_trees() {
         for bounds in [
