@@ -79,9 +79,7 @@ impl Failure {
     /// Tells the failure on standard error, and as an object on standard output where that was asked for.
     pub(crate) fn print(&self, streams: &mut Streams, as_json: bool) {
         let (code, mut message, advice) = match self {
-            Self::Narrow { error, .. } => {
-                (error.diagnostic().code(), error.to_string(), error.diagnostic().advice())
-            }
+            Self::Narrow { error, .. } => (error.diagnostic().code(), error.to_string(), error.diagnostic().advice()),
             Self::Own { code, message, advice, .. } => (*code, message.clone(), advice.clone()),
         };
         if let Self::Narrow { file: Some(file), .. } = self {

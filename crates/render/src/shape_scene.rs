@@ -65,11 +65,7 @@ mod tests {
     #[test]
     fn parts_are_placed_and_coloured() {
         let red = Material { base_color: [1.0, 0.0, 0.0, 0.5], ..Material::default() };
-        let part = Part {
-            placement: Affine::from_translation(DVec3::Z),
-            material: Some(0),
-            ..Part::new(triangle())
-        };
+        let part = Part { placement: Affine::from_translation(DVec3::Z), material: Some(0), ..Part::new(triangle()) };
         let lost = Part { material: Some(9), ..Part::new(triangle()) };
         let shape = Shape { parts: vec![part, lost], materials: vec![red], ..Shape::default() };
         let scene = scene_of_shape(&shape).unwrap();

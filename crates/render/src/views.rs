@@ -27,13 +27,7 @@ pub fn sensible_camera(bounds: &Aabb, up: DVec3, aspect: f64) -> Result<Camera, 
 ///
 /// # Errors
 /// As [`sensible_camera`].
-pub fn camera_from(
-    bounds: &Aabb,
-    up: DVec3,
-    azimuth: f64,
-    elevation: f64,
-    aspect: f64,
-) -> Result<Camera, CameraError> {
+pub fn camera_from(bounds: &Aabb, up: DVec3, azimuth: f64, elevation: f64, aspect: f64) -> Result<Camera, CameraError> {
     let (bounds, axes) = view(bounds, up, azimuth, elevation, aspect)?;
     let [right, above, backward] = axes;
     let center = bounds.center();
@@ -84,7 +78,13 @@ pub fn turntable(bounds: &Aabb, up: DVec3, aspect: f64, frames: u32) -> Result<V
 }
 
 /// A box with a size, and the axes (right, up, backward) of the view from an azimuth.
-fn view(bounds: &Aabb, up: DVec3, azimuth: f64, elevation: f64, aspect: f64) -> Result<(Aabb, [DVec3; 3]), CameraError> {
+fn view(
+    bounds: &Aabb,
+    up: DVec3,
+    azimuth: f64,
+    elevation: f64,
+    aspect: f64,
+) -> Result<(Aabb, [DVec3; 3]), CameraError> {
     let scale = bounds.min.abs().max(bounds.max.abs()).max_element();
     let bounds = match bounds.diagonal() {
         // A point is seen from a distance that its coordinates can tell apart.

@@ -152,13 +152,7 @@ impl Delivery<'_> {
         Ok(())
     }
 
-    fn tell(
-        &self,
-        conversion: &Conversion,
-        written: &Report,
-        deviation: Deviation,
-        session: &mut Session<'_>,
-    ) {
+    fn tell(&self, conversion: &Conversion, written: &Report, deviation: Deviation, session: &mut Session<'_>) {
         for (index, step) in conversion.steps.iter().enumerate() {
             let seconds = session.globals.timings.then(|| conversion.timings.seconds[index]);
             session.say(account::step_words(step, seconds));

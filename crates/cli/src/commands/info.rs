@@ -22,11 +22,7 @@ pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Resul
     object.insert("bytes".into(), json!(input.bytes));
     object.insert("findings".into(), account::findings(&input.read.findings));
     object.insert("losses".into(), account::losses(&input.read.losses));
-    if session.globals.json {
-        session.print_json(&Value::Object(object))
-    } else {
-        session.print(words(&object))
-    }
+    if session.globals.json { session.print_json(&Value::Object(object)) } else { session.print(words(&object)) }
 }
 
 /// Everything about a shape as one object: counts are sums over the parts as they are placed.
@@ -163,9 +159,7 @@ impl Totals {
             object.insert("area".into(), account::number(area));
             object.insert("volume".into(), account::number(volume));
         }
-        let one = |(domain, name, width, kind): (String, String, usize, &str)| {
-            json!({ "domain": domain, "name": name, "width": width, "type": kind })
-        };
+        let one = |(domain, name, width, kind): (String, String, usize, &str)| json!({ "domain": domain, "name": name, "width": width, "type": kind });
         object.insert("attributes".into(), self.attributes.into_iter().map(one).collect());
     }
 }
@@ -188,9 +182,7 @@ fn triangle_edges(mesh: &TriMesh, exec: &Exec) -> Result<usize, Failure> {
 
 fn polygon_edges(mesh: &PolyMesh, exec: &Exec) -> Result<usize, Failure> {
     let _memory = exec.reserve_elements(mesh.wedge_vertices().len() as u64, 8)?;
-    let sides = mesh.faces().flat_map(|face| {
-        (0..face.len()).map(move |k| rising(face[k], face[(k + 1) % face.len()]))
-    });
+    let sides = mesh.faces().flat_map(|face| (0..face.len()).map(move |k| rising(face[k], face[(k + 1) % face.len()])));
     Ok(distinct(sides.filter(|[a, b]| a != b).collect()))
 }
 

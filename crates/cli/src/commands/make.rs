@@ -31,10 +31,7 @@ pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Resul
         made.report.deviation
     ));
     let diagonal = made.value.bounds().diagonal();
-    let shape = Shape {
-        up: Some(UpAxis::Z),
-        ..Shape::new(Part::new(made.value).named(arguments.shape.as_str()))
-    };
+    let shape = Shape { up: Some(UpAxis::Z), ..Shape::new(Part::new(made.value).named(arguments.shape.as_str())) };
     let source = json!({ "shape": arguments.shape, "report": account::report(&made.report) });
     let tolerance = Tolerance::OfDiagonal(1e-3).resolve(diagonal)?;
     let job = Job { wish: Wish::to(format.kinds), tolerance, settings: Vec::new() };

@@ -1,0 +1,116 @@
+//! Measures what the libraries do: one JSON line for each set of runs.
+//!
+//! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
+//! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
+
+mod measure;
+mod tessellate;
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use serde_json::{Map, Value, json};
+
+/// Measures one task.
+#[derive(Debug, Parser)]
+#[command(name = "shapeloom-bench", version)]
+struct Arguments {
+    /// What to measure
+    task: Task,
+    /// The folder with the inputs
+    #[arg(long, default_value = "data")]
+    data: PathBuf,
+    /// How many runs; the fastest counts
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: u32,
+    /// How many threads; by default one for each processor
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// The tolerance of conversions, relative to the diagonal of the input's bounding box
+    #[arg(long, default_value_t = 1e-4)]
+    tolerance: f64,
+    /// Print JSON, which is what is printed anyhow
+    #[arg(long)]
+    json: bool,
+}
+
+/// What can be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Task {
+    /// The teapot's patches to triangles.
+    Tessellate,
+}
+
+impl Task {
+    /// Every task.
+    pub const ALL: [Self; 1] = [Self::Tessellate];
+
+    /// The name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tessellate => "tessellate",
+        }
+    }
+}
+
+/// What a task found: the input's name, sizes and quality figures, and the times.
+pub(crate) struct Outcome {
+    pub(crate) input: String,
+    pub(crate) times: measure::Times,
+    pub(crate) figures: Map<String, Value>,
+}
+
+/// What a task needs to know.
+pub(crate) struct Setting {
+    pub(crate) data: PathBuf,
+    pub(crate) runs: u32,
+    pub(crate) tolerance: f64,
+}
+
+/// Runs a command line, the program's name first, and returns its exit code: 0, or 2 for anything that went wrong.
+pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let wrong = error.use_stderr();
+            let stream = if wrong { err } else { out };
+            let _ = write!(stream, "{}", error.render());
+            return if wrong { 2 } else { 0 };
+        }
+    };
+    let Arguments { task, data, runs, threads, tolerance, json: _ } = arguments;
+    let setting = Setting { data, runs, tolerance };
+    let work = || match task {
+        Task::Tessellate => tessellate::run(&setting),
+    };
+    let outcome = match threads {
+        None => work(),
+        Some(count) => match rayon::ThreadPoolBuilder::new().num_threads(usize::from(count)).build() {
+            Ok(pool) => pool.install(work),
+            Err(error) => Err(format!("{count} threads cannot be started: {error}")),
+        },
+    };
+    match outcome {
+        Ok(Outcome { input, times, figures }) => {
+            let mut line = json!({
+                "task": task.name(),
+                "input": input,
+                "runs": runs,
+                "threads": threads.map_or_else(rayon::current_num_threads, usize::from),
+                "wall_s": times.wall,
+                "cpu_s": times.cpu,
+            });
+            if let Some(object) = line.as_object_mut() {
+                object.extend(figures);
+            }
+            let _ = writeln!(out, "{line}");
+            0
+        }
+        Err(message) => {
+            let _ = writeln!(err, "error: {message}");
+            2
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! What each code means, for `explain`.
+
+/// Codes of the crates other than io, which has its own list.
+const EXPLANATIONS: &[(&str, &str)] = &[
+    (
+        "E-affine-singular",
+        "An affine map flattens space and has no inverse; give one with a determinant that is not 0.",
+    ),
+    ("E-attribute-duplicate", "Two attributes of one element kind have the same name."),
+    ("E-attribute-length", "An attribute has another number of elements than the shape."),
+    ("E-attribute-text", "A text attribute has an index without a name, or more than one text an element."),
+    ("E-attribute-width", "The number of an attribute's values is no multiple of its width."),
+    ("E-bezier-count", "A control net has another number of points than its degrees ask for: (m + 1)(n + 1)."),
+    ("E-bezier-degree", "A Bézier degree is above 255, beyond which an evaluation takes over a millisecond."),
+    ("E-bezier-empty", "A curve has no control points."),
+    ("E-bezier-finite", "A control point is infinite or not a number."),
+    ("E-bvh-index", "A triangle names a vertex that does not exist."),
+    ("E-bvh-finite", "A triangle's corner is infinite or not a number."),
+    ("E-bvh-count", "There are more triangles than 32-bit ids can tell apart."),
+    ("E-camera-bounds", "There is nothing to fit into the picture, or the picture has no size."),
+    ("E-camera-fov", "The angle of view is not between 0 and 180 degrees."),
+    ("E-camera-height", "The height of a parallel view is not a positive number."),
+    ("E-camera-view", "The view direction is zero or parallel to the up direction."),
+    ("E-cancelled", "The work was interrupted; nothing was written."),
+    ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
+    ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
+    ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
+    (
+        "E-memory-budget",
+        "The work needs more memory than --max-memory allows; ask for a coarser result, or allow more.",
+    ),
+    ("E-mesh-corners", "A polygon has fewer than three corners."),
+    ("E-mesh-grid", "A height field's number of heights is not its columns times its rows, both from 2."),
+    ("E-mesh-index", "A face names a vertex that does not exist."),
+    ("E-mesh-position", "A position is infinite or not a number."),
+    ("E-mesh-size", "There are more elements than 32-bit ids can tell apart."),
+    ("E-mesh-starts", "The corners of polygon faces are listed out of order."),
+    ("E-mesh-triangle", "A polygon stands where only triangles fit; triangulate first."),
+    ("E-option-range", "An option's number is outside its bounds; `shapeloom graph` lists options with their bounds."),
+    ("E-option-text", "An option's value cannot be read as the kind of value it takes."),
+    ("E-option-unknown", "A converter has no option of that name; `shapeloom graph` lists them."),
+    ("E-output-exists", "The output exists already; --force replaces it."),
+    ("E-output-format", "The output's format can be read but not written yet."),
+    ("E-output-write", "The output cannot be written: a folder cannot be made, is not writable, or the disk is full."),
+    ("E-picture-empty", "Nothing in the shape has a surface that could be drawn."),
+    ("E-plan-method", "No converter has the name given with --method; `shapeloom graph` lists them."),
+    ("E-plan-no-way", "No chain of converters leads from what the input holds to what the output format can hold."),
+    ("E-plan-off-the-way", "The converter named with --method does not fit between the input and the output."),
+    ("E-plan-option", "No converter on the way has the option given with --set."),
+    ("E-ray-direction", "A ray has a direction without a length, or coordinates that are not finite."),
+    ("E-render-count", "There are more triangles or positions in a picture than 32-bit ids can tell apart."),
+    ("E-render-empty", "There is no triangle to draw."),
+    ("E-render-encode", "The picture could not be encoded as PNG."),
+    ("E-render-finite", "A position to draw is infinite or not a number."),
+    ("E-render-index", "A triangle to draw names a position that does not exist."),
+    ("E-render-length", "A list of a scene's mesh does not fit its number of triangles."),
+    ("E-render-up", "The up direction of a picture has no length."),
+    ("E-rotation-angle", "A rotation's angle is infinite or not a number."),
+    ("E-rotation-axis", "A rotation's axis has no length."),
+    ("E-rotation-matrix", "A matrix is no rotation: its columns are not perpendicular unit vectors, or it mirrors."),
+    ("E-shape-kind", "A shape is of another kind than an operation takes; convert it first."),
+    ("E-shape-unit", "A unit of length is not a positive number of metres."),
+    ("E-strict-tolerance", "With --strict, a result was refused that is not proven to be within the tolerance."),
+    (
+        "E-tessellation-rounding",
+        "The tolerance is smaller than the rounding of coordinates at this size; no mesh meets it.",
+    ),
+    ("E-tessellation-segments", "A curve or patch needs more segments than its option max_segments allows."),
+    ("E-tessellation-size", "The tolerance asks for more vertices than 32-bit ids can tell apart."),
+    ("E-time-limit", "The work took longer than --max-time allows; nothing was written."),
+    ("E-tolerance-range", "A tolerance is not a positive finite number."),
+    ("E-tolerance-scale", "A tolerance in per cent needs a shape with a size; give one in model units."),
+    ("E-tolerance-text", "A tolerance is neither a number nor a number with %."),
+    ("E-usage-code", "There is no error or warning code of that name."),
+    ("E-usage-format", "The format of standard output has to be named with --to."),
+    ("E-usage-kind", "There is no kind of shape of that name; `shapeloom graph` lists them."),
+    ("E-usage-outputs", "Two outputs have one name, or two kinds of data want standard output."),
+    ("E-usage-shape", "There is no ready shape of that name."),
+    ("E-usage-threads", "That many threads could not be started."),
+    (
+        "W-patch-degenerate",
+        "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",
+    ),
+    ("W-polygon-simple", "A polygon crosses itself or has no area; it was cut into triangles as well as possible."),
+];
+
+/// Every code with its meaning.
+pub(crate) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    EXPLANATIONS.iter().chain(shapeloom_io::EXPLANATIONS).copied()
+}
+
+/// What a code means, in a sentence or two.
+pub fn explanation(code: &str) -> Option<&'static str> {
+    all().find(|(known, _)| *known == code).map(|(_, text)| text)
+}

@@ -1,0 +1,19 @@
+//! Tests across crates: one binary, a module for each concern.
+//!
+//! Documents that are made from tables are compared with what the tables say; with `SHAPELOOM_BLESS=1` in the
+//! environment they are written anew instead.
+
+mod bench;
+mod codes;
+mod command_line;
+mod documents;
+mod floors;
+mod harness;
+mod laws;
+mod malformed;
+mod oracles;
+mod round_trips;
+mod same_bits;
+mod shapes;
+mod support;
+mod verification;

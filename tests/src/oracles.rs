@@ -1,0 +1,158 @@
+//! Distances by brute force, sharing nothing with the crates but their vectors.
+
+use shapeloom::core::glam::DVec3;
+use shapeloom::mesh::{HeightField, PolyMesh, TriMesh};
+use shapeloom::shape::Geometry;
+
+/// The distance from a point to a segment.
+pub fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
+    let along = b - a;
+    let length = along.length_squared();
+    let t = if length > 0.0 { ((p - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    p.distance(a + along * t)
+}
+
+/// The distance from a point to a triangle.
+pub fn to_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a);
+    let left = |from: DVec3, to: DVec3| normal.cross(to - from).dot(p - from) >= 0.0;
+    if normal.length_squared() > 0.0 && left(a, b) && left(b, c) && left(c, a) {
+        return (p - a).dot(normal.normalize()).abs();
+    }
+    to_segment(p, a, b).min(to_segment(p, b, c)).min(to_segment(p, c, a))
+}
+
+/// The straight pieces that a geometry is made of.
+pub enum Pieces {
+    Triangles(Vec<[DVec3; 3]>),
+    Segments(Vec<[DVec3; 2]>),
+    Points(Vec<DVec3>),
+}
+
+impl Pieces {
+    pub fn of(geometry: &Geometry) -> Option<Self> {
+        match geometry {
+            Geometry::TriMesh(mesh) => Some(Self::Triangles(triangles(mesh))),
+            Geometry::PolyMesh(mesh) => Some(Self::Triangles(fans(mesh))),
+            Geometry::Polyline(line) => Some(Self::Segments(line.segments().collect())),
+            Geometry::PointCloud(cloud) => Some(Self::Points(cloud.positions().to_vec())),
+            _ => None,
+        }
+    }
+
+    /// The distance from a point, by trying every piece.
+    pub fn distance(&self, p: DVec3) -> f64 {
+        match self {
+            Self::Triangles(all) => all.iter().map(|&t| to_triangle(p, t)).fold(f64::INFINITY, f64::min),
+            Self::Segments(all) => all.iter().map(|&[a, b]| to_segment(p, a, b)).fold(f64::INFINITY, f64::min),
+            Self::Points(all) => all.iter().map(|&q| p.distance(q)).fold(f64::INFINITY, f64::min),
+        }
+    }
+
+    /// Points spread over the pieces: corners, middles of sides, and a lattice inside.
+    pub fn samples(&self) -> Vec<DVec3> {
+        match self {
+            Self::Points(points) => points.clone(),
+            Self::Segments(all) => {
+                all.iter().flat_map(|[a, b]| (0..=4).map(|k| a.lerp(*b, f64::from(k) / 4.0))).collect()
+            }
+            Self::Triangles(all) => {
+                let weights = [
+                    [1.0, 0.0, 0.0],
+                    [0.0, 1.0, 0.0],
+                    [0.0, 0.0, 1.0],
+                    [0.5, 0.5, 0.0],
+                    [0.0, 0.5, 0.5],
+                    [0.5, 0.0, 0.5],
+                    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+                ];
+                let mix = |t: &[DVec3; 3], w: [f64; 3]| t[0] * w[0] + t[1] * w[1] + t[2] * w[2];
+                all.iter().flat_map(|t| weights.map(|w| mix(t, w))).collect()
+            }
+        }
+    }
+}
+
+pub fn triangles(mesh: &TriMesh) -> Vec<[DVec3; 3]> {
+    mesh.triangles().iter().map(|triangle| triangle.map(|vertex| mesh.positions()[vertex as usize])).collect()
+}
+
+/// The fan of each face from its first corner: the face itself where it is convex and flat.
+fn fans(mesh: &PolyMesh) -> Vec<[DVec3; 3]> {
+    let at = |vertex: u32| mesh.positions()[vertex as usize];
+    mesh.faces().flat_map(|face| (1..face.len() - 1).map(move |k| [at(face[0]), at(face[k]), at(face[k + 1])])).collect()
+}
+
+/// Points of a geometry itself, by its definition and not by any converter: Bernstein sums, bilinear cells.
+pub fn samples(geometry: &Geometry) -> Vec<DVec3> {
+    match geometry {
+        Geometry::BezierCurve(curve) => {
+            (0..=400).map(|k| bernstein(curve.control_points(), f64::from(k) / 400.0)).collect()
+        }
+        Geometry::BezierSurface(surface) => {
+            let mut points = Vec::new();
+            for patch in &surface.patches {
+                let width = patch.degree_u() + 1;
+                const STEPS: u32 = 24;
+                for j in 0..=STEPS {
+                    for i in 0..=STEPS {
+                        let (u, v) = (f64::from(i) / f64::from(STEPS), f64::from(j) / f64::from(STEPS));
+                        let rows: Vec<DVec3> =
+                            patch.control_points().chunks_exact(width).map(|row| bernstein(row, u)).collect();
+                        points.push(bernstein(&rows, v));
+                    }
+                }
+            }
+            points
+        }
+        Geometry::HeightField(field) => bilinear(field),
+        other => Pieces::of(other).map_or(Vec::new(), |pieces| pieces.samples()),
+    }
+}
+
+/// The Bernstein form, term by term.
+pub fn bernstein(control: &[DVec3], t: f64) -> DVec3 {
+    let n = control.len() - 1;
+    let mut binomial = 1.0;
+    let mut sum = DVec3::ZERO;
+    for (i, &point) in control.iter().enumerate() {
+        sum += point * (binomial * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32));
+        binomial *= (n - i) as f64 / (i + 1) as f64;
+    }
+    sum
+}
+
+fn bilinear(field: &HeightField) -> Vec<DVec3> {
+    let mut points = Vec::new();
+    for row in 0..field.rows() - 1 {
+        for column in 0..field.columns() - 1 {
+            let corner = |i: u32, j: u32| field.sample(column + i, row + j);
+            let (Some(a), Some(b), Some(c), Some(d)) = (corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)) else {
+                continue;
+            };
+            for k in 0..25 {
+                let (s, t) = (f64::from(k % 5) / 4.0, f64::from(k / 5) / 4.0);
+                points.push(a.lerp(b, s).lerp(d.lerp(c, s), t));
+            }
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_oracle_knows_faces_sides_and_corners() {
+        let t = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        for (p, wanted) in [
+            (DVec3::new(0.2, 0.2, 3.0), 3.0),
+            (DVec3::new(0.5, -2.0, 0.0), 2.0),
+            (DVec3::new(-3.0, -4.0, 0.0), 5.0),
+            (DVec3::new(1.0, 1.0, 0.0), 0.5f64.sqrt()),
+        ] {
+            assert!((to_triangle(p, t) - wanted).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Shapes of every kind to try things on.
+
+use shapeloom::core::Exec;
+use shapeloom::core::glam::{DVec2, DVec3};
+use shapeloom::io::{ReadContext, format_by_id, read};
+use shapeloom::mesh::primitives::{Cylinder, Platonic, Solid, Torus};
+use shapeloom::mesh::{Column, Domain, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
+use shapeloom::parametric::{BezierCurve, BezierPatch, BezierSurface};
+use shapeloom::shape::{Geometry, Kind};
+
+use crate::support::data;
+
+/// Newell's teapot from data/.
+pub fn teapot() -> Geometry {
+    let name = data("teapot.bpt");
+    let bytes = std::fs::read(&name).expect("data/teapot.bpt is in the repository");
+    let format = format_by_id("bpt").expect("BPT is a format");
+    let shape = read(&bytes, format, &ReadContext::named(name)).expect("the teapot is sound").shape;
+    (*shape.parts[0].geometry).clone()
+}
+
+/// A patch of degrees 3 x 2 that is bent in both directions and twisted.
+pub fn bent_patch() -> BezierPatch {
+    let net = (0..12).map(|k| {
+        let (i, j) = (f64::from(k % 4), f64::from(k / 4));
+        DVec3::new(i + 0.3 * j, j - 0.2 * i, (i * 1.3).sin() + 0.5 * i * j)
+    });
+    BezierPatch::try_new(3, 2, net.collect()).expect("a finite net of the right size")
+}
+
+pub fn curve() -> BezierCurve<DVec3> {
+    let control = [(0.0, 0.0, 0.0), (2.0, 3.0, 0.0), (4.0, -2.0, 1.0), (5.0, 0.0, 3.0), (3.0, 1.0, 4.0)];
+    BezierCurve::try_new(control.map(DVec3::from).to_vec()).expect("finite control points")
+}
+
+pub fn hills() -> HeightField {
+    let heights = (0..12 * 9)
+        .map(|k| {
+            let (i, j) = (f64::from(k % 12), f64::from(k / 12));
+            if k == 40 { f64::NAN } else { (i * 0.7).sin() * (j * 0.9).cos() }
+        })
+        .collect();
+    HeightField::try_new(12, 9, DVec2::new(0.5, 0.4), heights).expect("a grid of the right size")
+}
+
+/// A closed polygon mesh with labels on every kind of element.
+pub fn tagged_polygons() -> PolyMesh {
+    let mut mesh = Cylinder { segments: 24, ..Cylinder::new() }.mesh(&Exec::default()).expect("a small cylinder").value;
+    let count = |domain: Domain| mesh.attributes().of(domain).len() as u32;
+    let sizes = [Domain::Vertex, Domain::Face, Domain::Wedge].map(|domain| (domain, count(domain)));
+    for (domain, size) in sizes {
+        mesh.insert_attribute(domain, Column::labels("tag", (0..size).collect())).expect("a label for each");
+    }
+    mesh
+}
+
+/// A closed triangle mesh with labels on every kind of element, and each corner of each triangle a vertex of its own.
+pub fn tagged_triangles() -> TriMesh {
+    let torus = Torus { segments: 20, sides: 10, ..Torus::new() }.mesh(&Exec::default()).expect("a small torus").value;
+    let mut positions = Vec::new();
+    for face in torus.faces() {
+        for corner in [0, 1, 2, 0, 2, 3] {
+            positions.push(torus.positions()[face[corner] as usize]);
+        }
+    }
+    let count = positions.len() as u32;
+    let triangles = (0..count / 3).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    let mut mesh = TriMesh::try_new(positions, triangles).expect("a soup is a mesh");
+    for (domain, size) in [(Domain::Vertex, count), (Domain::Face, count / 3), (Domain::Wedge, count)] {
+        mesh.insert_attribute(domain, Column::labels("tag", (0..size).collect())).expect("a label for each");
+    }
+    mesh
+}
+
+/// Small shapes of a kind, with what each is called.
+pub fn of_kind(kind: Kind) -> Vec<(&'static str, Geometry)> {
+    let cube = || Platonic::new(Solid::Dodecahedron).mesh(&Exec::default()).expect("a dodecahedron").value;
+    match kind {
+        Kind::PointCloud => vec![("points", PointCloud::new(vec![DVec3::ZERO, DVec3::ONE]).into())],
+        Kind::BezierCurve => vec![("curve", curve().into())],
+        Kind::BezierSurface => vec![
+            ("teapot", teapot()),
+            ("bent patch", BezierSurface::new(vec![bent_patch()]).into()),
+            ("nothing", BezierSurface::default().into()),
+        ],
+        Kind::Polyline => vec![("polyline", Polyline::new(vec![DVec3::ZERO, DVec3::X, DVec3::ONE], true).into())],
+        Kind::HeightField => vec![("hills", hills().into())],
+        Kind::PolyMesh => vec![
+            ("tagged cylinder", tagged_polygons().into()),
+            ("dodecahedron", cube().into()),
+            ("nothing", PolyMesh::default().into()),
+        ],
+        Kind::TriMesh => vec![("tagged soup", tagged_triangles().into()), ("nothing", TriMesh::default().into())],
+        other => panic!("no shape of kind {other} to try things on: add one here"),
+    }
+}
