@@ -1,0 +1,109 @@
+//! The bytes behind a document's buffers.
+
+use std::borrow::Cow;
+
+use shapeloom_core::{Category, Place};
+
+use super::base64;
+use super::json::At;
+use crate::memory::Memory;
+use crate::text::quoted;
+use crate::{Fault, ReadContext, ReadError, SiblingName};
+
+/// A buffer, and where it starts in the file if it is a part of it.
+pub(super) struct Buffer<'a> {
+    bytes: Cow<'a, [u8]>,
+    start: Option<usize>,
+}
+
+/// Finds every buffer: the binary chunk, data URIs, files beside the input.
+pub(super) fn open<'a>(
+    document: &At<'_>,
+    bin: Option<(&'a [u8], usize)>,
+    memory: &mut Memory<'_>,
+    context: &ReadContext,
+) -> Result<Vec<Buffer<'a>>, ReadError> {
+    let mut buffers = Vec::new();
+    let Some(list) = document.get("buffers")? else {
+        return Ok(buffers);
+    };
+    for (index, buffer) in list.elements()?.enumerate() {
+        context.exec.check()?;
+        let length = buffer.require("byteLength")?.count_value()?;
+        let (bytes, start) = match (buffer.get("uri")?, bin) {
+            (Some(uri), _) => (Cow::Owned(from_uri(&uri, length, memory, context)?), None),
+            (None, Some((bytes, start))) if index == 0 => (Cow::Borrowed(bytes), Some(start)),
+            (None, _) => {
+                let fault = buffer.fault("E-gltf-buffer", "no address and no binary chunk", "bytes for the buffer");
+                return Err(fault.into());
+            }
+        };
+        if (bytes.len() as u64) < length {
+            let found = format!("{} bytes", bytes.len());
+            return Err(buffer.fault("E-gltf-buffer", found, format!("{length} as its byteLength says")).into());
+        }
+        buffers.push(Buffer { bytes, start });
+    }
+    Ok(buffers)
+}
+
+fn from_uri(uri: &At<'_>, length: u64, memory: &mut Memory<'_>, context: &ReadContext) -> Result<Vec<u8>, ReadError> {
+    let address = uri.text()?;
+    if let Some(data) = address.strip_prefix("data:") {
+        let encoded = data.split_once(',').and_then(|(head, encoded)| head.ends_with(";base64").then_some(encoded));
+        memory.take(encoded.map_or(0, str::len), 1)?;
+        let decoded = encoded.and_then(|encoded| base64::decode(encoded.as_bytes()));
+        return Ok(decoded.ok_or_else(|| uri.fault("E-gltf-uri", quoted(address.as_bytes()), "base64 data"))?);
+    }
+    let found = || quoted(address.as_bytes());
+    let name = SiblingName::from_uri(address)
+        .map_err(|_| uri.fault("E-sibling-path", found(), "the name of a file in the folder of the input"))?;
+    let Some(siblings) = &context.siblings else {
+        let fault = uri.fault("E-sibling-missing", found(), "a buffer inside the input, which is read alone");
+        return Err(fault.category(Category::Unsupported).advice("read it by its path, or as one GLB file").into());
+    };
+    let most = length.min(context.limits.max_bytes);
+    memory.take(usize::try_from(most).unwrap_or(usize::MAX), 1)?;
+    // Files are rounded up to blocks, so a few bytes more than the buffer needs are no error.
+    let opened = siblings.open(&name, context.limits.max_bytes);
+    Ok(opened.map_err(|error| uri.fault("E-sibling-missing", format!("{}: {error}", found()), "a readable file"))?)
+}
+
+/// The bytes of a view, where they start in the file if they do, and the distance of elements.
+#[derive(Clone, Copy)]
+pub(super) struct View<'a> {
+    pub bytes: &'a [u8],
+    start: Option<usize>,
+    pub stride: Option<u64>,
+}
+
+impl View<'_> {
+    /// The place in the file of a byte of the view.
+    pub fn place(&self, offset: usize) -> Place {
+        self.start.map_or(Place::Whole, |start| Place::Byte((start + offset) as u64))
+    }
+}
+
+/// The view that `index` names.
+pub(super) fn view<'a>(document: &At<'_>, index: &At<'_>, buffers: &'a [Buffer<'_>]) -> Result<View<'a>, Box<Fault>> {
+    let view = document.element("bufferViews", index)?;
+    if view.value.pointer("/extensions/EXT_meshopt_compression").is_some() {
+        return Err(view.fault("E-gltf-feature", "meshopt compression", "plain data").category(Category::Unsupported));
+    }
+    document.element("buffers", &view.require("buffer")?)?;
+    let buffer = &buffers[view.require("buffer")?.count_value()? as usize];
+    let offset = view.count_or("byteOffset", 0)?;
+    let length = view.require("byteLength")?.count_value()?;
+    let end = offset.checked_add(length).filter(|&end| end <= buffer.bytes.len() as u64);
+    let Some(end) = end else {
+        let found = format!("{length} bytes from byte {offset}");
+        let expected = format!("a part of the {} bytes of the buffer", buffer.bytes.len());
+        return Err(view.fault("E-gltf-bounds", found, expected));
+    };
+    let stride = view.get("byteStride")?.map(|stride| stride.count_value()).transpose()?;
+    Ok(View {
+        bytes: &buffer.bytes[offset as usize..end as usize],
+        start: buffer.start.map(|start| start + offset as usize),
+        stride,
+    })
+}

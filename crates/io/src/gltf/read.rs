@@ -1,0 +1,149 @@
+//! Reading glTF.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde_json::Value;
+use shapeloom_core::{Category, Findings, Place, Severity};
+use shapeloom_shape::{Geometry, Part, Shape, Units, UpAxis};
+
+use super::json::{self, At};
+use super::primitive::Primitives;
+use super::{buffers, container, materials, scene};
+use crate::memory::Memory;
+use crate::placed::Losses;
+use crate::text::quoted;
+use crate::{Fault, ReadContext, ReadError, ReadShape};
+
+pub(super) fn read_glb(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
+    let mut findings = Findings::default();
+    let container = container::open(input, &mut findings)?;
+    let mut memory = Memory::new(&context.exec);
+    let start = container.json_start;
+    let document = json::parse(container.json, &mut memory, |_, _, offset| Place::Byte((start + offset) as u64))??;
+    read_document(&document, container.bin, memory, findings, context)
+}
+
+pub(super) fn read_gltf(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
+    let mut findings = Findings::default();
+    let text = input.strip_prefix(b"\xef\xbb\xbf").unwrap_or(input);
+    if text.len() < input.len() {
+        let message = "the file begins with a byte order mark, which glTF forbids; it was passed over";
+        findings.push("W-gltf-mark", Severity::Warning, Place::Byte(0), message);
+    }
+    let mut memory = Memory::new(&context.exec);
+    let line = |line, column, _| Place::Line { line, column: Some(column) };
+    let document = json::parse(text, &mut memory, line)??;
+    read_document(&document, None, memory, findings, context)
+}
+
+fn read_document<'e>(
+    document: &Value,
+    bin: Option<(&[u8], usize)>,
+    mut memory: Memory<'e>,
+    mut findings: Findings,
+    context: &'e ReadContext,
+) -> Result<ReadShape, ReadError> {
+    context.exec.check()?;
+    let root = At::root(document);
+    check_asset(&root)?;
+    let buffers = buffers::open(&root, bin, &mut memory, context)?;
+    let placed = scene::placed_nodes(&root, &mut memory, &mut findings, context)?;
+
+    let mut shape = Shape { units: Some(Units::METERS), up: Some(UpAxis::Y), ..Shape::default() };
+    if let Some(list) = root.get("materials")? {
+        for material in list.elements()? {
+            memory.take(1, 2 * size_of::<shapeloom_shape::Material>())?;
+            shape.materials.push(materials::from_json(&material, &root)?);
+        }
+    }
+    let losses = document_losses(&root)?;
+    let mut primitives = Primitives { document: root.clone(), buffers: &buffers, context, memory, findings, losses };
+    let mut known: BTreeMap<String, Vec<Arc<Geometry>>> = BTreeMap::new();
+    for (done, placed) in placed.iter().enumerate() {
+        context.exec.progress(done as f64 / placed.node.path.len().max(1) as f64);
+        let node = &placed.node;
+        if node.get("skin")?.is_some() {
+            primitives.losses.push("skins", "shapes have one form: the mesh was read as it is");
+        }
+        let mesh = root.element("meshes", &node.require("mesh")?)?;
+        let name = match node.get("name")? {
+            Some(name) => Some(name),
+            None => mesh.get("name")?,
+        };
+        let name = name.map_or(Ok(""), |name| name.text())?;
+        for primitive in mesh.require("primitives")?.elements()? {
+            let key = geometry_key(primitive.value);
+            if !known.contains_key(&key) {
+                let read = primitives.read(&primitive)?;
+                primitives.memory.take(key.len() + 128, 1)?;
+                known.insert(key.clone(), read);
+            }
+            let material = match primitive.get("material")? {
+                Some(index) => {
+                    root.element("materials", &index)?;
+                    Some(index.count_value()? as u32)
+                }
+                None => None,
+            };
+            for geometry in known.get(&key).into_iter().flatten() {
+                primitives.memory.take(name.len() + 2 * size_of::<Part>(), 1)?;
+                let (geometry, placement) = (Arc::clone(geometry), placed.placement);
+                shape.parts.push(Part { name: name.to_owned(), geometry, placement, material });
+            }
+        }
+    }
+    Ok(ReadShape { shape, findings: primitives.findings, losses: primitives.losses.into_vec() })
+}
+
+/// What of a primitive makes its geometry: primitives that agree in it share one, whatever their material.
+fn geometry_key(primitive: &Value) -> String {
+    let part = |key: &str| primitive.get(key).map_or(String::new(), Value::to_string);
+    ["attributes", "indices", "mode", "extensions"].map(part).join(";")
+}
+
+fn check_asset(root: &At<'_>) -> Result<(), Box<Fault>> {
+    let asset = root.require("asset")?;
+    let version = asset.require("version")?;
+    let least = asset.get("minVersion")?;
+    for said in [Some(&version), least.as_ref()].into_iter().flatten() {
+        let text = said.text()?;
+        let supported = text
+            .split_once('.')
+            .is_some_and(|(major, minor)| major == "2" && (said.path == version.path || minor == "0"));
+        if !supported {
+            let fault = said.fault("E-gltf-version", quoted(text.as_bytes()), "version 2.0");
+            return Err(fault.category(Category::Unsupported));
+        }
+    }
+    if let Some(required) = root.get("extensionsRequired")?
+        && let Some(extension) = required.elements()?.next()
+    {
+        let found = quoted(extension.text()?.as_bytes());
+        return Err(extension
+            .fault("E-gltf-extension", found, "no extension that a reader must know")
+            .category(Category::Unsupported)
+            .advice("write the file anew with another program, without this extension"));
+    }
+    Ok(())
+}
+
+/// What shapes have no place for, by the lists of the document.
+fn document_losses(root: &At<'_>) -> Result<Losses, Box<Fault>> {
+    let mut losses = Losses::default();
+    for (list, why) in [
+        ("animations", "shapes do not move"),
+        ("cameras", "shapes have no cameras"),
+        ("textures", "pictures are not read; the name of the base colour texture is kept, if there is one"),
+    ] {
+        let count = root.count(list)?;
+        if count > 0 {
+            losses.push(format!("{count} {list}"), why);
+        }
+    }
+    let scenes = root.count("scenes")?;
+    if scenes > 1 {
+        losses.push(format!("{} other scenes", scenes - 1), "a shape is one scene: the one that the file shows");
+    }
+    Ok(losses)
+}

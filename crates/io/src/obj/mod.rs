@@ -1,0 +1,60 @@
+//! Wavefront OBJ, written.
+//!
+//! Conventions: decimal numbers are the shortest that read back to the same bits; texture coordinates have v running
+//! up; colours follow the position as fractions in sRGB; each part is an object `o`; lines are `l`, points `p`. Texture
+//! coordinates and normals that are equal bit by bit are written once in a file.
+
+#[cfg(test)]
+mod tests;
+mod write;
+
+use shapeloom_shape::Kind;
+
+use crate::text::{Text, parse_number};
+use crate::{Format, Keeps, Precision, Sniff};
+
+/// Wavefront OBJ.
+pub(crate) const FORMAT: Format = Format {
+    id: "obj",
+    name: "Wavefront OBJ",
+    extensions: &["obj"],
+    media_type: "model/obj",
+    text: true,
+    up: None,
+    precision: Precision::F64,
+    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::PolyMesh, Kind::TriMesh],
+    keeps: &[Keeps::Normals, Keeps::Texcoords, Keeps::Colors, Keeps::Wedges, Keeps::Names, Keeps::Parts],
+    sniff,
+    reads: None,
+    writes: Some(write::write),
+};
+
+/// Only lines that OBJ has, and a vertex among them. The last line may be cut off.
+fn sniff(head: &[u8]) -> Sniff {
+    const WORDS: [&[u8]; 14] =
+        [b"v", b"vt", b"vn", b"vp", b"f", b"l", b"p", b"o", b"g", b"s", b"mtllib", b"usemtl", b"usemap", b"end"];
+    let Ok(text) = Text::try_new(head, &Default::default()) else {
+        return Sniff::No;
+    };
+    let mut lines = text.lines();
+    let mut vertices = 0;
+    while let Ok(Some(line)) = lines.next_line() {
+        if lines.remaining() == 0 && vertices > 0 {
+            break;
+        }
+        let mut words = line.bytes.split(|byte| byte.is_ascii_whitespace()).filter(|word| !word.is_empty());
+        match words.next() {
+            None => {}
+            Some(word) if word.starts_with(b"#") => {}
+            Some(b"v") => {
+                if words.filter(|word| parse_number(word).is_ok()).count() < 3 {
+                    return Sniff::No;
+                }
+                vertices += 1;
+            }
+            Some(word) if WORDS.contains(&word) => {}
+            Some(_) => return Sniff::No,
+        }
+    }
+    if vertices > 0 { Sniff::Likely } else { Sniff::No }
+}
