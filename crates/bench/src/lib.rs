@@ -74,10 +74,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            let wrong = error.use_stderr();
-            let stream = if wrong { err } else { out };
-            let _ = write!(stream, "{}", error.render());
-            return if wrong { 2 } else { 0 };
+            let (written, code) = match error.use_stderr() {
+                true => (write!(err, "{}", error.render()), 2),
+                false => (write!(out, "{}", error.render()), 0),
+            };
+            return if written.is_ok() { code } else { 2 };
         }
     };
     let Arguments { task, data, runs, threads, tolerance, json: _ } = arguments;

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use shapeloom_core::{Category, ConvertError, Diagnostic};
+use shapeloom_core::{Category, ConvertError};
 
 use crate::Streams;
 
@@ -111,14 +111,8 @@ impl Failure {
     }
 }
 
-impl<E: Diagnostic> From<E> for Failure {
+impl<E: Into<ConvertError>> From<E> for Failure {
     fn from(error: E) -> Self {
         Self::Narrow { error: error.into(), file: None }
-    }
-}
-
-impl From<ConvertError> for Failure {
-    fn from(error: ConvertError) -> Self {
-        Self::Narrow { error, file: None }
     }
 }

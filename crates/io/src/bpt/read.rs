@@ -139,6 +139,7 @@ mod tests {
     use crate::{format_by_id, read};
     use shapeloom_core::{Diagnostic, Exec, Surface};
     use shapeloom_shape::Geometry;
+    use shapeloom_shape::Representation;
 
     const TEAPOT: &[u8] = include_bytes!("../../../../data/teapot.bpt");
 
@@ -147,7 +148,7 @@ mod tests {
     }
 
     fn surface(shape: &ReadShape) -> &BezierSurface {
-        <&BezierSurface>::try_from(&*shape.shape.parts[0].geometry).unwrap()
+        BezierSurface::from_geometry(&shape.shape.parts[0].geometry).unwrap()
     }
 
     fn fault(input: &str) -> Box<Fault> {

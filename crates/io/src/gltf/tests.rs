@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use shapeloom_core::glam::{DMat3, DVec3};
 use shapeloom_core::{Affine, AxisAngle, Category, Deviation, Diagnostic, Exec, Limits, Report, Threads};
 use shapeloom_mesh::{Blend, COLOR, Column, Domain, NORMAL, PointCloud, Polyline, TEXCOORD, TriMesh, Values};
-use shapeloom_shape::{Geometry, Material, Part, Shape, Units, UpAxis};
+use shapeloom_shape::{Geometry, Material, Part, Representation, Shape, Units, UpAxis};
 
 use crate::test_data::shared_data;
 use crate::{
@@ -25,7 +25,7 @@ fn from_glb(file: &[u8]) -> ReadShape {
 }
 
 fn mesh(shape: &Shape, part: usize) -> &TriMesh {
-    <&TriMesh>::try_from(&*shape.parts[part].geometry).unwrap()
+    TriMesh::from_geometry(&shape.parts[part].geometry).unwrap()
 }
 
 /// Two triangles with a seam in texture coordinates, normals, colours and labels.
@@ -113,7 +113,7 @@ fn scenes_come_back_and_stay_the_same_bits() {
     let labels = split.attribute(Domain::Vertex, "region").unwrap();
     assert_eq!((labels.values(), labels.blend()), (&Values::U16(vec![7, 8, 9, 40_000, 9]), Blend::Copy));
     assert_eq!(split.attribute(Domain::Vertex, "heat").unwrap().values(), &Values::F32(vec![0.5, -1.5, 2.0, 1e6, 2.0]));
-    let cloud = <&PointCloud>::try_from(&*read.parts[4].geometry).unwrap();
+    let cloud = PointCloud::from_geometry(&read.parts[4].geometry).unwrap();
     assert_eq!(cloud.attributes().get("size").unwrap().values(), &Values::I8((0..10).map(|i| i - 5).collect()));
 
     let (again, second) = to_glb(read).unwrap();
