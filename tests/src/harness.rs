@@ -120,7 +120,7 @@ fn cancelling_at_any_tick_gives_a_typed_error() {
             counter.fetch_add(1, Ordering::Relaxed);
             None
         });
-        converter.run(&source, &request(&source), &counting).expect("it ran before");
+        let _ = converter.run(&source, &request(&source), &counting).expect("it ran before");
         let total = polls.load(Ordering::Relaxed);
         assert!(total > 0 || source.bounds().is_empty(), "{} on {name} never polls", converter.name);
         for _ in 0..8.min(total) {
