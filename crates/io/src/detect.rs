@@ -172,7 +172,7 @@ mod tests {
         let error = id(b"\x00\x01something else of no format", Some("folder.glb/what")).unwrap_err();
         assert!(matches!(error, DetectError::Unknown { .. }));
         let text = error.to_string();
-        assert!(text.contains("\\x00\\x01something el...") && text.contains("glb, gltf, bpt"), "{text}");
+        assert!(text.contains("\\x00\\x01something else...") && text.contains("glb, gltf, bpt"), "{text}");
     }
 
     #[test]
