@@ -108,6 +108,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-bpt-up", "BPT says nothing of directions, and its readers take z as up."),
     ("W-glb-chunk", "A chunk that glTF 2.0 does not define, or not in this place, was passed over."),
     ("W-glb-color", "Colours in whole numbers are sRGB; glTF stores linear intensities, and so they were converted."),
+    (
+        "W-glb-finite",
+        "glTF asks for finite numbers. Values of attributes that are infinite or not a number were written as they are.",
+    ),
     ("W-glb-normal", "glTF allows only normals of unit length, so normals without direction were replaced."),
     ("W-glb-padding", "The length of a chunk must be a multiple of four."),
     ("W-glb-single", "glTF stores attributes in single precision, about seven digits."),

@@ -74,6 +74,7 @@ fn read_document<'e>(
         };
         let name = name.map_or(Ok(""), |name| name.text())?;
         for primitive in mesh.require("primitives")?.elements()? {
+            context.exec.check()?;
             let key = geometry_key(primitive.value);
             if !known.contains_key(&key) {
                 let read = primitives.read(&primitive)?;
