@@ -15,6 +15,8 @@ use crate::{FORMATS, Format, Sniff};
 /// # Errors
 /// Neither the content nor the extension is known.
 pub fn detect(head: &[u8], file_name: Option<&str>) -> Result<&'static Format, DetectError> {
+    // Content heuristics look at every line that they get.
+    let head = &head[..head.len().min(1 << 16)];
     let named = file_name.and_then(extension).and_then(|word| by_extension(&word));
     let sniffed = |wanted: Sniff| FORMATS.iter().filter(move |format| (format.sniff)(head) == wanted);
     if let Some(format) = sniffed(Sniff::Certain).next() {
@@ -172,7 +174,7 @@ mod tests {
         let error = id(b"\x00\x01something else of no format", Some("folder.glb/what")).unwrap_err();
         assert!(matches!(error, DetectError::Unknown { .. }));
         let text = error.to_string();
-        assert!(text.contains("\\x00\\x01something el...") && text.contains("glb, gltf, bpt"), "{text}");
+        assert!(text.contains("\\x00\\x01something else...") && text.contains("glb, gltf, bpt"), "{text}");
     }
 
     #[test]

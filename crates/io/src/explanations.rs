@@ -1,9 +1,170 @@
 //! What codes mean.
 
-/// Every code of this crate with what it means and what can be done, sorted by code.
-pub const EXPLANATIONS: &[(&str, &str)] = &[];
+/// Every code of this crate with what it means and what can be done, in the order of the codes.
+pub const EXPLANATIONS: &[(&str, &str)] = &[
+    ("E-bpt-count", "A BPT file begins with the number of patches, in digits alone. Correct the first number."),
+    (
+        "E-bpt-degree",
+        "Each patch of a BPT file begins with two degrees, whole numbers from 1. A patch before it may have \
+     too many or too few control points, so that other numbers are read as degrees.",
+    ),
+    (
+        "E-bpt-finite",
+        "A coordinate of a control point is infinite, no number, or larger than the largest double. Points \
+     must be finite: repair the program that wrote the file.",
+    ),
+    (
+        "E-bpt-limit",
+        "The file asks for more patches, control points or a higher degree than the reader's limits allow.",
+    ),
+    ("E-bpt-number", "A coordinate of a control point was expected and something else was found."),
+    ("E-bpt-patch", "The control points of a patch make no Bézier patch."),
+    (
+        "E-bpt-truncated",
+        "The file ends before the number of patches that its first number promises. It was cut off, or the \
+     number is wrong.",
+    ),
+    ("E-format-id", "No format has this short name. The list of formats has all of them."),
+    (
+        "E-format-output",
+        "The format of an output follows from its extension, and no format that is written has this one.",
+    ),
+    (
+        "E-format-unknown",
+        "Neither the first bytes nor the extension of the input tell its format. Name the format if you \
+     know it.",
+    ),
+    (
+        "E-glb-chunk",
+        "A chunk of a GLB file claims more bytes than the file's header leaves for it. The file is damaged.",
+    ),
+    ("E-glb-length", "The length in the header of a GLB file is not that of the file. It was cut off, or damaged."),
+    ("E-glb-magic", "A GLB file begins with the letters glTF. This is another kind of file, or its start is damaged."),
+    ("E-glb-order", "The first chunk of a GLB file must be JSON."),
+    ("E-glb-truncated", "A GLB file ends within its header or one of its chunks. Get the file again."),
+    ("E-glb-version", "Only version 2 of the GLB container is read. Convert the file with another program."),
+    (
+        "E-gltf-bounds",
+        "An accessor or a buffer view reaches past the end of its bytes, or its elements overlap. Nothing \
+     outside of a buffer is ever read; the program that wrote the file counted wrongly.",
+    ),
+    ("E-gltf-buffer", "A buffer has fewer bytes than its byteLength, or no bytes at all."),
+    ("E-gltf-count", "An accessor has no elements, or attributes of one primitive have different numbers of elements."),
+    ("E-gltf-cycle", "A node is its own ancestor. The nodes of a scene must be a tree."),
+    ("E-gltf-depth", "Nodes are nested deeper than the reader's limits allow."),
+    (
+        "E-gltf-extension",
+        "The file requires an extension that is not read, so that it cannot be understood without it.",
+    ),
+    ("E-gltf-feature", "The file uses a part of glTF that is not read yet: sparse accessors or compressed data."),
+    ("E-gltf-index", "An index of a primitive names a vertex that does not exist."),
+    ("E-gltf-json", "The document is not valid JSON. The message names the first place at fault."),
+    ("E-gltf-limit", "The file has more elements than the reader's limits allow."),
+    ("E-gltf-mesh", "The vertices, indices and attributes of a primitive make no mesh."),
+    ("E-gltf-missing", "A member that glTF requires is absent."),
+    ("E-gltf-mode", "The mode of a primitive is a number from 0, points, to 6, a fan of triangles."),
+    (
+        "E-gltf-parents",
+        "A node has two parents, or the scene reaches it twice. The nodes of a scene must be a tree; \
+     instances share a mesh, not a node.",
+    ),
+    ("E-gltf-reference", "A number names an element of a list that is not there."),
+    (
+        "E-gltf-type",
+        "A value has another type than glTF gives it: a string for a number, VEC2 for positions, floating \
+     numbers for indices.",
+    ),
+    ("E-gltf-uri", "An embedded buffer is not base64 data."),
+    ("E-gltf-version", "Only version 2.0 of glTF is read."),
+    ("E-read-format", "Files of this format are recognized and written, but not read yet."),
+    ("E-read-io", "The input could not be read to its end."),
+    ("E-read-size", "The input is longer than the reader's limits allow. Raise the limit if you trust it."),
+    (
+        "E-sibling-missing",
+        "The input names a file beside it that is not there, too long or unreadable, or the input is \
+     read alone so that nothing is beside it.",
+    ),
+    ("E-sibling-path", "The input names a file outside of its own folder. Such files are never opened."),
+    ("E-text-encoding", "The text is in UTF-16 or UTF-32. Save it as UTF-8."),
+    ("E-text-line", "A line is longer than the reader's limits allow. It may not be text at all."),
+    (
+        "E-write-finite",
+        "A position is infinite or not a number, or becomes so where it is placed or in the numbers of the \
+     format. Repair the shape first.",
+    ),
+    ("E-write-format", "Files of this format are read but not written."),
+    ("E-write-io", "The output could not be written: the disk may be full, or the folder read only."),
+    (
+        "E-write-kind",
+        "The format cannot hold a part of this kind. Convert the part first, to triangles for most formats.",
+    ),
+    ("E-write-size", "The shape has more bytes or elements than the format can count."),
+    ("W-bpt-empty", "The file says that it has no patches; the surface is empty."),
+    (
+        "W-bpt-trailing",
+        "More follows after the last patch. Everything up to there was read; the number of patches in the \
+     first line may be too small.",
+    ),
+    ("W-bpt-up", "BPT says nothing of directions, and its readers take z as up."),
+    ("W-glb-chunk", "A chunk that glTF 2.0 does not define, or not in this place, was passed over."),
+    ("W-glb-color", "Colours in whole numbers are sRGB; glTF stores linear intensities, and so they were converted."),
+    (
+        "W-glb-finite",
+        "glTF asks for finite numbers. Values of attributes that are infinite or not a number were written as they are.",
+    ),
+    ("W-glb-normal", "glTF allows only normals of unit length, so normals without direction were replaced."),
+    ("W-glb-padding", "The length of a chunk must be a multiple of four."),
+    ("W-glb-single", "glTF stores attributes in single precision, about seven digits."),
+    ("W-glb-trailing", "The file is longer than its header says; what follows was not read."),
+    ("W-glb-up", "glTF has y up. The up axis of the shape is not known, so it was written without turning it."),
+    ("W-gltf-corners", "The number of indices of a primitive is no multiple of three; the last ones make no triangle."),
+    ("W-gltf-finite", "A position is infinite or not a number. It was kept: repair the mesh before using it."),
+    ("W-gltf-mark", "The document begins with a byte order mark, which glTF forbids."),
+    ("W-gltf-matrix", "The last row of a node's matrix must be 0 0 0 1, and was taken as that."),
+    ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
+    ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
+    ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
+];
 
 /// The explanation of a code of this crate.
 pub fn explanation(code: &str) -> Option<&'static str> {
     EXPLANATIONS.iter().find(|(known, _)| *known == code).map(|(_, text)| *text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use std::path::{Path, PathBuf};
+
+    fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            match path.extension() {
+                None => sources(&path, found),
+                Some(word) if word == "rs" && !path.ends_with("explanations.rs") => found.push(path),
+                Some(_) => {}
+            }
+        }
+    }
+
+    #[test]
+    fn every_code_is_explained_and_every_explanation_has_a_code() {
+        let mut files = Vec::new();
+        sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
+        let mut used = BTreeSet::new();
+        for file in files {
+            let text = std::fs::read_to_string(file).unwrap();
+            for word in text.split('"').filter(|word| word.starts_with("E-") || word.starts_with("W-")) {
+                let plain = word.bytes().all(|byte| byte.is_ascii_alphabetic() || byte == b'-');
+                if plain && word.split('-').count() == 3 {
+                    used.insert(word.to_owned());
+                }
+            }
+        }
+        let explained: BTreeSet<String> = EXPLANATIONS.iter().map(|(code, _)| (*code).to_owned()).collect();
+        assert_eq!(used, explained);
+        assert!(EXPLANATIONS.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        assert!(explanation("E-bpt-count").is_some() && explanation("E-none").is_none());
+    }
 }

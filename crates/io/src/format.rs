@@ -8,7 +8,7 @@ use shapeloom_shape::{Kind, Shape, UpAxis};
 
 use crate::{ReadContext, ReadError, ReadShape, WriteContext, WriteError, bpt, gltf, obj, ply};
 
-/// Reads a whole file. Errors need not name the input: [`read`](crate::read) does.
+/// Reads a whole file. Errors need not name the input: [`read`](crate::read()) does.
 pub type ReadFn = fn(&[u8], &ReadContext) -> Result<ReadShape, ReadError>;
 
 /// Writes a whole file. The kinds of the parts are in [`Format::kinds`]: [`write()`](crate::write()) has checked.

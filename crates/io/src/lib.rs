@@ -1,8 +1,8 @@
 //! Files: bytes to [`Shape`](shapeloom_shape::Shape) and back.
 //!
 //! - [`FORMATS`]: one table says what each format is called, how it is recognized, what it can hold and keep, and how it
-//!   is read and written. [`detect`], [`format_by_id`] and [`format_for_output`] choose from it.
-//! - [`read`]: a slice of bytes under [`Limits`](shapeloom_core::Limits) and an [`Exec`](shapeloom_core::Exec) gives a
+//!   is read and written. [`detect()`], [`format_by_id`] and [`format_for_output`] choose from it.
+//! - [`read()`]: a slice of bytes under [`Limits`](shapeloom_core::Limits) and an [`Exec`](shapeloom_core::Exec) gives a
 //!   shape, what was odd about the file, and what of it the shape does not hold. [`slurp`] gets the bytes.
 //! - [`write()`]: a shape gives bytes and the [`Report`](shapeloom_core::Report) of what they do not hold and how far
 //!   positions were rounded. The same shape always gives the same bytes.

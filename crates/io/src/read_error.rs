@@ -11,7 +11,7 @@ pub struct Fault {
     pub code: &'static str,
     /// The broad kind of failure.
     pub category: Category,
-    /// What the caller calls the input; empty until [`read`](crate::read) has put it in.
+    /// What the caller calls the input; empty until [`read`](crate::read()) has put it in.
     pub input: String,
     /// Where, in lines or bytes.
     pub place: Place,

@@ -193,13 +193,20 @@ impl Encoder<'_> {
     /// Values in single precision, zero where a vertex has none, and whether any was rounded.
     fn floats(&mut self, source: Source<'_>, width: usize, at: impl Fn(usize, usize) -> f64) -> (Value, bool) {
         let mut values = Vec::with_capacity(source.elements.len() * width);
-        let mut rounded = false;
+        let (mut rounded, mut finite) = (false, true);
         for vertex in 0..source.elements.len() {
             for component in 0..width {
                 let value = source.elements.get(vertex).map_or(0.0, |element| at(element, component));
                 values.push(value as f32);
                 rounded |= f64::from(value as f32) != value && !value.is_nan();
+                finite &= (value as f32).is_finite();
             }
+        }
+        if !finite {
+            let (domain, name) = (source.domain, source.column.name());
+            let message =
+                format!("the {domain} attribute \"{name}\" has values that are not finite in single precision");
+            self.findings.push("W-glb-finite", Severity::Warning, Place::Whole, message);
         }
         (self.bin.floats(width, &values, false), rounded)
     }

@@ -60,8 +60,9 @@ fn read_document<'e>(
     let losses = document_losses(&root)?;
     let mut primitives = Primitives { document: root.clone(), buffers: &buffers, context, memory, findings, losses };
     let mut known: BTreeMap<String, Vec<Arc<Geometry>>> = BTreeMap::new();
+    let count = placed.len();
     for (done, placed) in placed.iter().enumerate() {
-        context.exec.progress(done as f64 / placed.node.path.len().max(1) as f64);
+        context.exec.progress(done as f64 / count as f64);
         let node = &placed.node;
         if node.get("skin")?.is_some() {
             primitives.losses.push("skins", "shapes have one form: the mesh was read as it is");
@@ -73,6 +74,7 @@ fn read_document<'e>(
         };
         let name = name.map_or(Ok(""), |name| name.text())?;
         for primitive in mesh.require("primitives")?.elements()? {
+            context.exec.check()?;
             let key = geometry_key(primitive.value);
             if !known.contains_key(&key) {
                 let read = primitives.read(&primitive)?;

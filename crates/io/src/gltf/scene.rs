@@ -46,6 +46,7 @@ pub(super) fn placed_nodes<'j>(
     };
     let nodes: Vec<At<'j>> = nodes.elements()?.collect();
     let mut visited = vec![false; count];
+    let mut steps = 0u32;
     let mut placed = Vec::new();
     while let Some(Entry { node, above, depth }) = stack.pop() {
         let at = &nodes[node];
@@ -57,7 +58,8 @@ pub(super) fn placed_nodes<'j>(
                 at.fault("E-gltf-depth", format!("nodes nested {depth} deep"), format!("at most {}", depth - 1));
             return Err(fault.category(Category::OverLimit).into());
         }
-        if visited.len() % 4096 == 0 {
+        steps += 1;
+        if steps.is_multiple_of(4096) {
             context.exec.check()?;
         }
         let placement = above * local(at, node, findings)?;

@@ -354,3 +354,24 @@ fn facet_normals(split: &Split, points: &[DVec3]) -> Vec<DVec3> {
     }
     normals
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_that_the_header_cannot_say_are_refused() {
+        assert_eq!(file_length(10, 0).unwrap(), 12 + 8 + 12);
+        assert_eq!(file_length(12, 5).unwrap(), 12 + 8 + 12 + 8 + 8);
+        let error = file_length(100, 1 << 32).unwrap_err();
+        assert!(error.to_string().starts_with("glb: found 4294967424 bytes, expected at most 4294967295"), "{error}");
+    }
+
+    #[test]
+    fn shears_and_flat_maps_are_no_node_matrices() {
+        let scale = Affine::from_scale(DVec3::new(1.0, -2.0, 1e-9));
+        assert!(is_node_matrix(&scale) && stretch(&scale) >= 2.0 && stretch(&scale) < 2.0001);
+        assert!(!is_node_matrix(&Affine::from_shear(DVec3::X, DVec3::Y)));
+        assert!(!is_node_matrix(&Affine::from_scale(DVec3::new(1.0, 0.0, 1.0))));
+    }
+}
