@@ -9,7 +9,8 @@ fn every_task_prints_one_line_of_json() {
     for task in Task::ALL {
         let (mut out, mut err) = (Vec::new(), Vec::new());
         let data = root().join("data").display().to_string();
-        let words = ["shapeloom-bench", task.name(), "--runs", "1", "--threads", "2", "--tolerance", "0.05", "--data", &data];
+        let words =
+            ["shapeloom-bench", task.name(), "--runs", "1", "--threads", "2", "--tolerance", "0.05", "--data", &data];
         let code = shapeloom_bench::run(words.map(Into::into), &mut out, &mut err);
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
         let line = String::from_utf8(out).expect("UTF-8");

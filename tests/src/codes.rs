@@ -13,11 +13,13 @@ fn codes() -> BTreeSet<String> {
             continue;
         }
         let source = std::fs::read_to_string(&path).expect("a source file");
-        for literal in source.split('"').skip(1).step_by(2) {
-            let coded = literal.starts_with("E-") || literal.starts_with("W-");
-            let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-            if coded && literal.len() > 4 && literal[2..].chars().all(plain) {
-                codes.insert(literal.to_owned());
+        for start in ["\"E-", "\"W-"] {
+            for rest in source.split(start).skip(1) {
+                let word = rest.split('"').next().unwrap_or_default();
+                let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+                if word.len() > 2 && word.chars().all(plain) {
+                    codes.insert(format!("{}{word}", &start[1..]));
+                }
             }
         }
     }

@@ -61,9 +61,7 @@ fn the_conversion_matrix_is_the_registry() {
             let names: Vec<String> = registry()
                 .iter()
                 .filter(|converter| converter.from == from && converter.to == to)
-                .map(|converter| {
-                    format!("[{}](algorithms/{}.md)", converter.name, converter.name.replace('-', "_"))
-                })
+                .map(|converter| format!("[{}](algorithms/{}.md)", converter.name, converter.name.replace('-', "_")))
                 .collect();
             let _ = write!(page, " {} |", names.join(", "));
         }

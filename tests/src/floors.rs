@@ -105,7 +105,8 @@ fn libraries_neither_print_nor_know_the_time() {
     for path in files_below("crates", ".rs") {
         let relative = path.strip_prefix(root()).expect("below the root").display().to_string();
         let source = std::fs::read_to_string(&path).expect("a source file");
-        let code: String = source.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+        let code: String =
+            source.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
         let outermost = relative.starts_with("crates/cli/") || relative.starts_with("crates/bench/");
         if !outermost {
             for word in ["println!", "eprintln!", "std::process::exit"] {

@@ -80,7 +80,9 @@ pub fn triangles(mesh: &TriMesh) -> Vec<[DVec3; 3]> {
 /// The fan of each face from its first corner: the face itself where it is convex and flat.
 fn fans(mesh: &PolyMesh) -> Vec<[DVec3; 3]> {
     let at = |vertex: u32| mesh.positions()[vertex as usize];
-    mesh.faces().flat_map(|face| (1..face.len() - 1).map(move |k| [at(face[0]), at(face[k]), at(face[k + 1])])).collect()
+    mesh.faces()
+        .flat_map(|face| (1..face.len() - 1).map(move |k| [at(face[0]), at(face[k]), at(face[k + 1])]))
+        .collect()
 }
 
 /// Points of a geometry itself, by its definition and not by any converter: Bernstein sums, bilinear cells.

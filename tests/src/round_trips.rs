@@ -122,7 +122,18 @@ fn coordinates_of_five_million_metres_lose_nothing_in_glb() {
 fn made_shapes_go_through_every_writer() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for extension in ["glb", "ply", "obj"] {
-        for shape in ["tetrahedron", "cube", "octahedron", "dodecahedron", "icosahedron", "sphere", "torus", "cylinder", "cone", "grid"] {
+        for shape in [
+            "tetrahedron",
+            "cube",
+            "octahedron",
+            "dodecahedron",
+            "icosahedron",
+            "sphere",
+            "torus",
+            "cylinder",
+            "cone",
+            "grid",
+        ] {
             let file = folder.path().join(format!("{shape}.{extension}")).display().to_string();
             let made = run(&["make", shape, &file]);
             assert_eq!(made.code, 0, "{shape} {extension}: {}", made.err);

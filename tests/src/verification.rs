@@ -24,7 +24,8 @@ fn what_the_lines_name_is_there_and_the_page_says_the_same() {
         assert!(TRUTHS.contains(&truth), "{id}: found truth \"{truth}\", expected one of {TRUTHS:?}");
         let (file, function) = test.split_once("::").unwrap_or_else(|| panic!("{id}: {test} is no file::function"));
         let source = text(file);
-        let declared = source.find(&format!("fn {function}(")).unwrap_or_else(|| panic!("{id}: no {function} in {file}"));
+        let declared =
+            source.find(&format!("fn {function}(")).unwrap_or_else(|| panic!("{id}: no {function} in {file}"));
         assert!(source[..declared].trim_end().ends_with("#[test]"), "{id}: {function} in {file} is no test");
         let try_it = match (line.get("example"), line.get("command")) {
             (Some(example), None) => {

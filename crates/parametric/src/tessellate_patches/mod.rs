@@ -11,7 +11,6 @@ use shapeloom_core::{
 };
 use shapeloom_mesh::TriMesh;
 
-use crate::curvature_net::Scratch;
 use crate::tessellate_curve::{chord_share, rounding};
 use crate::{BezierSurface, TessellationError};
 use edges::EdgeTable;
@@ -143,7 +142,7 @@ impl TessellatePatches {
             }
             let found: Vec<Demand> = parallel::map_chunks(exec, stale.len(), 1, |part| {
                 let patch = stale[part.start];
-                let demand = examine(&plans[patch].nets, layouts[patch], share, &mut Scratch::default());
+                let demand = examine(&plans[patch].nets, layouts[patch], share, exec)?;
                 exec.progress(
                     f64::from(round) / f64::from(round + 1) + part.start as f64 / (stale.len() as f64 + 1.0) / 2.0,
                 );

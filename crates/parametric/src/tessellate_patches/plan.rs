@@ -1,6 +1,6 @@
 //! Choosing how finely each patch is cut.
 
-use shapeloom_core::Interval;
+use shapeloom_core::{Exec, Interval, Stop};
 
 use super::edges::EdgeTable;
 use super::layout::{Layout, Node};
@@ -58,9 +58,15 @@ pub(super) fn grid_for(bounds: &SecondDerivativeBounds, share: f64, allowed: u32
 }
 
 /// Bounds every piece of a patch with the sides as they are sampled now.
-pub(super) fn examine(nets: &CurvatureNets, layout: Layout, share: f64, scratch: &mut Scratch) -> Demand {
+pub(super) fn examine(nets: &CurvatureNets, layout: Layout, share: f64, exec: &Exec) -> Result<Demand, Stop> {
     let mut demand = Demand { layout, certificate: 0.0, sides: layout.sides, finer: false };
-    let _ = layout.pieces(|piece| {
+    let mut scratch = Scratch::default();
+    let mut examined = 0u32;
+    layout.pieces(|piece| {
+        examined = examined.wrapping_add(1);
+        if examined.is_multiple_of(1024) {
+            exec.check()?;
+        }
         let corners = piece.nodes().iter().map(|&node| layout.parameters(node));
         let span = |axis: usize| {
             let along = corners.clone().map(|corner| corner[axis]);
@@ -68,7 +74,7 @@ pub(super) fn examine(nets: &CurvatureNets, layout: Layout, share: f64, scratch:
             Interval::new(lo, hi)
         };
         let (u, v) = (span(0), span(1));
-        let error = nets.bounds(u, v, scratch).chord_error(u.length(), v.length());
+        let error = nets.bounds(u, v, &mut scratch).chord_error(u.length(), v.length());
         demand.certificate = demand.certificate.max(error);
         if error > share {
             let side = piece.nodes().iter().find_map(|node| match node {
@@ -84,9 +90,9 @@ pub(super) fn examine(nets: &CurvatureNets, layout: Layout, share: f64, scratch:
                 None => demand.finer = true,
             }
         }
-        Ok::<(), std::convert::Infallible>(())
-    });
-    demand
+        Ok(())
+    })?;
+    Ok(demand)
 }
 
 /// The layout of a patch for a grid, with its sides as they are sampled now. Poles follow the grid: every step of theirs
