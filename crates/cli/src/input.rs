@@ -1,9 +1,13 @@
 //! Reading inputs.
 
 use std::fs::File;
-use std::path::Path;
+use std::io::{ErrorKind, Read};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use shapeloom_io::{Format, ReadContext, ReadShape, detect, format_by_id, read, slurp};
+use shapeloom_io::{
+    Format, ReadContext, ReadShape, SiblingError, SiblingName, Siblings, detect, format_by_id, read, slurp,
+};
 
 use crate::failure::Failure;
 use crate::session::Session;
@@ -46,11 +50,31 @@ pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -
             detect(&bytes, file_name).map_err(|error| Failure::from(error).about(name.as_ref()))?
         }
     };
-    let context = ReadContext { limits, exec, ..ReadContext::named(name.as_str()) };
+    let siblings: Option<Arc<dyn Siblings>> = match path.parent() {
+        Some(folder) if !is_stream(path) => Some(Arc::new(Folder(folder.to_owned()))),
+        _ => None,
+    };
+    let context = ReadContext { limits, exec, siblings, ..ReadContext::named(name.as_str()) };
     let read = read(&bytes, format, &context).map_err(|error| Failure::from(error).about(name.as_ref()))?;
     session.say_findings(&read.findings);
     for loss in &read.losses {
         session.say(format_args!("not read: {loss}"));
     }
     Ok(Input { name, format, read, bytes: bytes.len() as u64 })
+}
+
+/// The folder of an input, for the files that it names.
+struct Folder(PathBuf);
+
+impl Siblings for Folder {
+    fn open(&self, name: &SiblingName, max_bytes: u64) -> Result<Vec<u8>, SiblingError> {
+        let unreadable = |error: std::io::Error| match error.kind() {
+            ErrorKind::NotFound => SiblingError::Missing,
+            _ => SiblingError::Io(error.to_string()),
+        };
+        let file = File::open(self.0.join(name.as_str())).map_err(unreadable)?;
+        let mut bytes = Vec::new();
+        file.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
+        if bytes.len() as u64 > max_bytes { Err(SiblingError::TooLong) } else { Ok(bytes) }
+    }
 }
