@@ -160,6 +160,21 @@ impl BezierPatch {
         if map.reverses_orientation() { moved.transposed() } else { moved }
     }
 
+    /// The curve of constant v, and the curve of the derivatives by v along it.
+    pub(crate) fn row_with_derivative(&self, v: f64) -> [Vec<DVec3>; 2] {
+        let width = self.degree_u + 1;
+        let (mut row, mut derivative) = (Vec::with_capacity(width), Vec::with_capacity(width));
+        let mut column = Vec::with_capacity(self.degree_v + 1);
+        for i in 0..width {
+            column.clear();
+            column.extend(self.control.iter().skip(i).step_by(width));
+            let [point, slope] = de_casteljau::evaluate_with_derivative(&mut column, v);
+            row.push(point);
+            derivative.push(slope);
+        }
+        [row, derivative]
+    }
+
     /// The box around the control net, which holds the patch.
     pub fn hull_bounds(&self) -> Aabb {
         Aabb::from_points(self.control.iter().copied())
@@ -198,10 +213,7 @@ impl BezierPatch {
         let size = self.hull_bounds().diagonal();
         let cross = |u: f64, v: f64| {
             let jet = self.jet(u, v);
-            let normal = jet.du.cross(jet.dv);
-            // A tangent of this length relative to the patch is rounding: collapsed sides evaluate to about 1e-16.
-            let long = |tangent: DVec3| tangent.length() > 1e-12 * size;
-            (long(jet.du) && long(jet.dv)).then(|| normal.try_normalize()).flatten()
+            tangent_normal(jet.du, jet.dv, size)
         };
         // The limit at a pole is approached at first order: 1e-6 of the way in leaves an angle of about 1e-6.
         [0.0, 1e-6, 1e-4, 1e-2].into_iter().find_map(|inward| {
@@ -209,6 +221,13 @@ impl BezierPatch {
             cross(toward(u), toward(v))
         })
     }
+}
+
+/// The unit normal across two tangents of a patch of that size; none where they do not span a plane.
+pub(crate) fn tangent_normal(du: DVec3, dv: DVec3, size: f64) -> Option<DVec3> {
+    // A tangent of this length relative to the patch is rounding: collapsed sides evaluate to about 1e-16.
+    let long = |tangent: DVec3| tangent.length() > 1e-12 * size;
+    if long(du) && long(dv) { du.cross(dv).try_normalize() } else { None }
 }
 
 impl Surface for BezierPatch {

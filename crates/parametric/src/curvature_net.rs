@@ -19,23 +19,34 @@ impl Net {
         Self { width, vectors, longest }
     }
 
-    /// Bounds the length over a part of the domain.
-    fn bound(&self, u: Interval, v: Interval, scratch: &mut Scratch) -> f64 {
+    /// Restricts the net in v, into `strip`.
+    fn restrict_v(&self, v: Interval, strip: &mut Vec<DVec3>, column: &mut Vec<DVec3>) {
+        strip.clear();
+        strip.extend_from_slice(&self.vectors);
+        if self.longest == 0.0 {
+            return;
+        }
+        for i in 0..self.width {
+            column.clear();
+            column.extend(self.vectors.iter().skip(i).step_by(self.width));
+            de_casteljau::restrict(column, v.lo, v.hi);
+            for (slot, &vector) in strip.iter_mut().skip(i).step_by(self.width).zip(column.iter()) {
+                *slot = vector;
+            }
+        }
+    }
+
+    /// Bounds the length over a part of the domain, from the net as it was restricted in v.
+    fn bound(&self, u: Interval, strip: &[DVec3], row: &mut Vec<DVec3>) -> f64 {
         if self.longest == 0.0 {
             return 0.0;
         }
-        let Scratch { net, column } = scratch;
-        net.clear();
-        net.extend_from_slice(&self.vectors);
-        for row in net.chunks_exact_mut(self.width) {
-            de_casteljau::restrict(row, u.lo, u.hi);
-        }
         let mut most = 0.0f64;
-        for i in 0..self.width {
-            column.clear();
-            column.extend(net.iter().skip(i).step_by(self.width));
-            de_casteljau::restrict(column, v.lo, v.hi);
-            most = most.max(longest(column));
+        for source in strip.chunks_exact(self.width) {
+            row.clear();
+            row.extend_from_slice(source);
+            de_casteljau::restrict(row, u.lo, u.hi);
+            most = most.max(longest(row));
         }
         // Restriction rounds each vector by a few units in the last place of the longest of the whole net.
         most + 1e-13 * self.longest
@@ -46,11 +57,13 @@ fn longest(vectors: &[DVec3]) -> f64 {
     vectors.iter().map(|vector| vector.length_squared()).fold(0.0, f64::max).sqrt()
 }
 
-/// Space for [`CurvatureNets::bounds`] to work in.
+/// Space for [`CurvatureNets::bounds`] to work in. It keeps the nets as they were last restricted in v: pieces of a patch
+/// come row by row. Used with one patch only.
 #[derive(Default)]
 pub(crate) struct Scratch {
-    net: Vec<DVec3>,
-    column: Vec<DVec3>,
+    v: Option<Interval>,
+    strips: [Vec<DVec3>; 3],
+    line: Vec<DVec3>,
 }
 
 /// The second partial derivatives of a patch in Bernstein form.
@@ -92,11 +105,16 @@ impl CurvatureNets {
 
     /// Bounds over a part of the patch.
     pub(crate) fn bounds(&self, u: Interval, v: Interval, scratch: &mut Scratch) -> SecondDerivativeBounds {
-        SecondDerivativeBounds {
-            uu: self.uu.bound(u, v, scratch),
-            uv: self.uv.bound(u, v, scratch),
-            vv: self.vv.bound(u, v, scratch),
+        let Scratch { v: last, strips, line } = scratch;
+        let nets = [&self.uu, &self.uv, &self.vv];
+        if *last != Some(v) {
+            for (net, strip) in nets.iter().zip(strips.iter_mut()) {
+                net.restrict_v(v, strip, line);
+            }
+            *last = Some(v);
         }
+        let mut bound = |k: usize| nets[k].bound(u, &strips[k], line);
+        SecondDerivativeBounds { uu: bound(0), uv: bound(1), vv: bound(2) }
     }
 }
 

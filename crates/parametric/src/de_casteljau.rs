@@ -21,6 +21,20 @@ pub(crate) fn evaluate<P: VectorSpace>(points: &mut [P], t: f64) -> P {
     points[0]
 }
 
+/// The point and the derivative at `t`: the last two points of the scheme span the tangent. Uses `points` as scratch
+/// space.
+pub(crate) fn evaluate_with_derivative<P: VectorSpace>(points: &mut [P], t: f64) -> [P; 2] {
+    let degree = points.len() - 1;
+    if degree == 0 {
+        return [points[0], P::ZERO];
+    }
+    for len in (3..=points.len()).rev() {
+        step(&mut points[..len], t);
+    }
+    let derivative = (points[1] - points[0]) * degree as f64;
+    [points[0] * (1.0 - t) + points[1] * t, derivative]
+}
+
 /// Replaces the control points by those of the part before `t`.
 fn keep_before<P: VectorSpace>(points: &mut [P], t: f64) {
     for round in 1..points.len() {

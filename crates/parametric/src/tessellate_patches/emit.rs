@@ -10,6 +10,8 @@ use super::TessellatePatches;
 use super::edges::{EdgeTable, bits};
 use super::layout::{Layout, Node, Piece};
 use super::plan::Demand;
+use crate::bezier_patch::tangent_normal;
+use crate::de_casteljau::evaluate_with_derivative;
 use crate::{BezierPatch, BezierSurface, PatchSide, TessellationError};
 
 /// A mesh, and the patches with triangles of zero area.
@@ -156,43 +158,73 @@ struct PatchJob<'a> {
 /// A corner of a triangle: its vertex, and where it lies on the patch.
 #[derive(Clone, Copy)]
 struct Corner {
+    node: Node,
     vertex: u32,
     parameters: [f64; 2],
 }
 
 impl PatchJob<'_> {
     fn run(&self, options: &TessellatePatches, exec: &Exec) -> Result<PatchMesh, ConvertError> {
-        let (columns, rows) = (self.layout.columns, self.layout.rows);
-        let mut mesh = PatchMesh {
-            inner: Vec::with_capacity(self.layout.inner_count() as usize),
-            triangles: Vec::new(),
-            normals: Vec::new(),
-            parameters: Vec::new(),
-            degenerate: false,
-        };
-        for j in 1..rows {
-            exec.check()?;
-            let row = self.patch.isocurve_u(f64::from(j) / f64::from(rows));
-            mesh.inner.extend((1..columns).map(|i| row.point(f64::from(i) / f64::from(columns))));
-        }
-        let mut normals = HashMap::new();
+        let (inner, inner_normals) = self.inner(options.normals, exec)?;
+        let side_normals = PatchSide::ALL.map(|side| self.side_normals(side, options.normals));
+        let mut mesh =
+            PatchMesh { inner, triangles: Vec::new(), normals: Vec::new(), parameters: Vec::new(), degenerate: false };
         let mut made = 0u32;
         self.layout.pieces(|piece| {
-            made += 1;
+            made = made.wrapping_add(1);
             if made.is_multiple_of(1024) {
                 exec.check()?;
             }
             for triangle in self.triangles(&piece, &mesh.inner) {
-                self.push(triangle, options, &mut normals, &mut mesh);
+                self.push(triangle, options, (&inner_normals, &side_normals), &mut mesh);
             }
             Ok::<_, ConvertError>(())
         })?;
         Ok(mesh)
     }
 
+    /// The grid points inside the patch and, if wanted, their normals.
+    fn inner(&self, normals: bool, exec: &Exec) -> Result<(Vec<DVec3>, Vec<Option<DVec3>>), ConvertError> {
+        let (columns, rows) = (self.layout.columns, self.layout.rows);
+        let count = self.layout.inner_count() as usize;
+        let mut points = Vec::with_capacity(count);
+        let mut found = Vec::with_capacity(if normals { count } else { 0 });
+        let mut scratch = Vec::new();
+        let mut evaluate = |row: &[DVec3], u: f64| {
+            scratch.clear();
+            scratch.extend_from_slice(row);
+            evaluate_with_derivative(&mut scratch, u)
+        };
+        let size = self.patch.hull_bounds().diagonal();
+        for j in 1..rows {
+            exec.check()?;
+            let v = f64::from(j) / f64::from(rows);
+            let [row, slopes] = self.patch.row_with_derivative(v);
+            for i in 1..columns {
+                let u = f64::from(i) / f64::from(columns);
+                let [point, du] = evaluate(&row, u);
+                points.push(point);
+                if normals {
+                    let [dv, _] = evaluate(&slopes, u);
+                    found.push(tangent_normal(du, dv, size).or_else(|| self.patch.normal(u, v)));
+                }
+            }
+        }
+        Ok((points, found))
+    }
+
+    /// The normals at the samples of a side, if wanted.
+    fn side_normals(&self, side: PatchSide, normals: bool) -> Vec<Option<DVec3>> {
+        let normal = |k: u32| {
+            let [u, v] = self.layout.parameters(Node::Side(side, k));
+            self.patch.normal(u, v)
+        };
+        if normals { (0..=self.layout.segments(side)).map(normal).collect() } else { Vec::new() }
+    }
+
     /// Cuts a piece into triangles, a cell along its shorter diagonal.
     fn triangles(&self, piece: &Piece, inner: &[DVec3]) -> impl Iterator<Item = [Corner; 3]> + use<> {
-        let corner = |node: Node| Corner { vertex: self.vertex(node), parameters: self.layout.parameters(node) };
+        let corner = |node: Node| Corner { node, vertex: self.vertex(node), parameters: self.layout.parameters(node) };
         let pair = match *piece {
             Piece::Triangle(nodes) => [Some(nodes.map(corner)), None],
             Piece::Cell(nodes) => {
@@ -237,7 +269,7 @@ impl PatchJob<'_> {
         &self,
         mut triangle: [Corner; 3],
         options: &TessellatePatches,
-        known: &mut HashMap<[u64; 2], Option<DVec3>>,
+        (inner_normals, side_normals): (&[Option<DVec3>], &[Vec<Option<DVec3>>; 4]),
         mesh: &mut PatchMesh,
     ) {
         let ids = triangle.map(|corner| corner.vertex);
@@ -247,12 +279,16 @@ impl PatchJob<'_> {
         let facet = triangle_normal(ids.map(|vertex| self.position(vertex, &mesh.inner)));
         mesh.degenerate |= facet == DVec3::ZERO;
         mesh.triangles.push(ids);
+        let before = triangle.map(|corner| corner.parameters);
         self.center_poles(&mut triangle);
         if options.normals {
-            for corner in triangle {
+            for (corner, before) in triangle.into_iter().zip(before) {
                 let [u, v] = corner.parameters;
-                let key = corner.parameters.map(f64::to_bits);
-                let normal = known.entry(key).or_insert_with(|| self.patch.normal(u, v));
+                let normal = match corner.node {
+                    _ if corner.parameters != before => self.patch.normal(u, v),
+                    Node::Inner(i, j) => inner_normals[((j - 1) * (self.layout.columns - 1) + i - 1) as usize],
+                    Node::Side(side, k) => side_normals[side as usize][k as usize],
+                };
                 mesh.normals.push(normal.unwrap_or(facet));
             }
         }
