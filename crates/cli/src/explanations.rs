@@ -81,6 +81,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-patch-degenerate",
         "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",
     ),
+    (
+        "W-patch-vanished",
+        "A patch, or a part of it, is only a point or a line and left no triangle: the error is unknown there.",
+    ),
     ("W-polygon-simple", "A polygon crosses itself or has no area; it was cut into triangles as well as possible."),
 ];
 

@@ -14,10 +14,13 @@ use crate::bezier_patch::tangent_normal;
 use crate::de_casteljau::evaluate_with_derivative;
 use crate::{BezierPatch, BezierSurface, PatchSide, TessellationError};
 
-/// A mesh, and the patches with triangles of zero area.
+/// A mesh, and the patches that are not what they should be.
 pub(super) struct Emitted {
     pub(super) mesh: TriMesh,
+    /// Patches with triangles of zero area.
     pub(super) degenerate: Vec<u32>,
+    /// Patches of which a part left nothing: the bound does not hold there.
+    pub(super) vanished: Vec<u32>,
 }
 
 /// Bytes while the mesh is built: positions, ids, three normals, three parameter pairs and a label a triangle, twice
@@ -38,12 +41,16 @@ pub(super) fn check_size(table: &EdgeTable, layouts: &[Layout], exec: &Exec) -> 
 }
 
 /// The triangles of one patch.
+#[derive(Default)]
 struct PatchMesh {
     inner: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     normals: Vec<DVec3>,
     parameters: Vec<[f64; 2]>,
+    /// What the triangles with two equal corners shrank to: a segment, or a point as a segment without length.
+    shrunk: Vec<[u32; 2]>,
     degenerate: bool,
+    vanished: bool,
 }
 
 pub(super) fn emit(
@@ -81,7 +88,8 @@ pub(super) fn emit(
     let total = parts.iter().map(|part| part.triangles.len()).sum();
     let mut triangles = Vec::with_capacity(total);
     let (mut normals, mut parameters) = (Vec::new(), Vec::new());
-    let (mut labels, mut degenerate) = (Vec::with_capacity(total), Vec::new());
+    let mut labels = Vec::with_capacity(total);
+    let (mut degenerate, mut vanished) = (Vec::new(), Vec::new());
     positions.reserve_exact(next as usize - positions.len());
     for (index, part) in parts.into_iter().enumerate() {
         positions.extend(part.inner);
@@ -91,6 +99,9 @@ pub(super) fn emit(
         parameters.extend(part.parameters);
         if part.degenerate {
             degenerate.push(index as u32);
+        }
+        if part.vanished {
+            vanished.push(index as u32);
         }
     }
     let mut mesh = TriMesh::try_new(positions, triangles)?;
@@ -102,7 +113,7 @@ pub(super) fn emit(
         insert(Domain::Wedge, Column::texcoords(TEXCOORD, &parameters))?;
     }
     insert(Domain::Face, Column::labels(PATCH, labels))?;
-    Ok(Emitted { mesh, degenerate })
+    Ok(Emitted { mesh, degenerate, vanished })
 }
 
 /// The ids of the vertices on boundary curves.
@@ -167,8 +178,7 @@ impl PatchJob<'_> {
     fn run(&self, options: &TessellatePatches, exec: &Exec) -> Result<PatchMesh, ConvertError> {
         let (inner, inner_normals) = self.inner(options.normals, exec)?;
         let side_normals = PatchSide::ALL.map(|side| self.side_normals(side, options.normals));
-        let mut mesh =
-            PatchMesh { inner, triangles: Vec::new(), normals: Vec::new(), parameters: Vec::new(), degenerate: false };
+        let mut mesh = PatchMesh { inner, ..PatchMesh::default() };
         let mut made = 0u32;
         self.layout.pieces(|piece| {
             made = made.wrapping_add(1);
@@ -180,6 +190,7 @@ impl PatchJob<'_> {
             }
             Ok::<_, ConvertError>(())
         })?;
+        mesh.vanished = !traces_are_left(&mut mesh.shrunk, &mesh.triangles);
         Ok(mesh)
     }
 
@@ -274,6 +285,7 @@ impl PatchJob<'_> {
     ) {
         let ids = triangle.map(|corner| corner.vertex);
         if ids[0] == ids[1] || ids[1] == ids[2] || ids[2] == ids[0] {
+            mesh.shrunk.push([ids[0].min(ids[1]).min(ids[2]), ids[0].max(ids[1]).max(ids[2])]);
             return;
         }
         let facet = triangle_normal(ids.map(|vertex| self.position(vertex, &mesh.inner)));
@@ -318,4 +330,23 @@ impl PatchJob<'_> {
             }
         }
     }
+}
+
+/// Whether every segment that a left-out triangle shrank to is still the side of a triangle: then nothing is missing from
+/// the surface, and the bound of the left-out triangle holds for the one beside it.
+fn traces_are_left(shrunk: &mut Vec<[u32; 2]>, triangles: &[[u32; 3]]) -> bool {
+    if shrunk.is_empty() {
+        return true;
+    }
+    shrunk.sort_unstable();
+    shrunk.dedup();
+    let mut seen = vec![false; shrunk.len()];
+    for &[a, b, c] in triangles {
+        for [p, q] in [[a, b], [b, c], [c, a], [a, a], [b, b], [c, c]] {
+            if let Ok(found) = shrunk.binary_search(&[p.min(q), p.max(q)]) {
+                seen[found] = true;
+            }
+        }
+    }
+    seen.into_iter().all(|seen| seen)
 }

@@ -103,6 +103,12 @@ impl Convert<BezierSurface> for TessellatePatches {
             let message = "triangles of zero area where the patch itself has none";
             report.findings.push("W-patch-degenerate", Severity::Warning, place, message);
         }
+        for &patch in &emitted.vanished {
+            let place = Place::element("patch", u64::from(patch));
+            let message = "a part that is a point or a line left no triangle; the error is not known there";
+            report.findings.push("W-patch-vanished", Severity::Warning, place, message);
+            report.deviation = Deviation::Unknown;
+        }
         report.certificates = certificates;
         Ok(Converted::new(emitted.mesh, report))
     }

@@ -104,8 +104,11 @@ pub(super) fn layout_for(table: &EdgeTable, patch: usize, [columns, rows]: [u32;
         let (a, b) = (uses[a as usize].edge, uses[b as usize].edge);
         if a == b && !table.edges[a as usize].collapsed { 3 } else { 1 }
     };
-    let columns = columns.max(closed(PatchSide::Left, PatchSide::Right));
-    let rows = rows.max(closed(PatchSide::Bottom, PatchSide::Top));
+    // Between two poles a single row or column of cells has no triangle left.
+    let poles = uses.iter().filter(|side| table.edges[side.edge as usize].collapsed).count();
+    let least = if poles > 1 { 2 } else { 1 };
+    let columns = columns.max(closed(PatchSide::Left, PatchSide::Right)).max(least);
+    let rows = rows.max(closed(PatchSide::Bottom, PatchSide::Top)).max(least);
     let sides = |columns: u32, rows: u32| {
         PatchSide::ALL.map(|side| {
             let edge = &table.edges[uses[side as usize].edge as usize];
