@@ -139,6 +139,17 @@ mod tests {
         assert!(plan(Kind::TriMesh, &Wish::to([Kind::TriMesh])).unwrap().steps.is_empty());
     }
 
+    /// A kind that stands first in the wish wins only between ways of equal length.
+    #[test]
+    fn the_source_will_do_where_it_is_wished_at_all() {
+        let wish = Wish::to([Kind::TriMesh, Kind::PolyMesh]);
+        assert!(plan(Kind::PolyMesh, &wish).unwrap().steps.is_empty());
+        assert_eq!(
+            names(&plan(Kind::BezierCurve, &Wish::to([Kind::TriMesh, Kind::Polyline])).unwrap()),
+            ["tessellate-curve"]
+        );
+    }
+
     #[test]
     fn where_no_way_leads_the_error_says_what_can_be_reached() {
         let error = plan(Kind::BezierCurve, &Wish::to([Kind::TriMesh])).unwrap_err();
