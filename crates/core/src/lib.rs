@@ -50,7 +50,7 @@ pub use homogeneous::{Combination, Homogeneous, HomogeneousError};
 pub use interval::Interval;
 pub use limits::Limits;
 #[doc(hidden)]
-pub use options::private as options_private;
+pub use options::declare::private as options_private;
 pub use options::{Bounds, ChoiceOption, OptionError, OptionKind, OptionSpec, OptionType, OptionValue, Options};
 pub use place::Place;
 pub use ray::{Ray, RayError};

@@ -4,7 +4,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine};
 
 use crate::sums::compensated;
-use crate::{AttributeError, Attributes, Column, Domain, MeshAttributes, MeshError, MeshOrigins, Origins, carry};
+use crate::{AttributeError, Column, Domain, MeshAttributes, MeshError, MeshOrigins, Origins, carry};
 
 /// Triangles over shared vertices, counter-clockwise seen from outside, with attribute columns.
 ///
@@ -178,11 +178,6 @@ impl TriMesh {
     /// The memory that the mesh takes, in bytes.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(self.positions.as_slice()) + size_of_val(self.triangles.as_slice()) + self.attributes.memory_bytes()
-    }
-
-    /// The columns of one kind of element.
-    pub fn columns(&self, domain: Domain) -> &Attributes {
-        self.attributes.of(domain)
     }
 }
 
