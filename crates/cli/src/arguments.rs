@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
-use shapeloom_core::Tolerance;
+use shapeloom_core::{Tolerance, ToleranceError};
 
 /// Represents shapes in many forms, converts any of them into any other, and says what each conversion cost.
 #[derive(Debug, Parser)]
@@ -73,8 +73,8 @@ pub(crate) enum Command {
 #[derive(Clone, Debug, Args)]
 pub(crate) struct WayArguments {
     /// How far the result may be from the input: a length (0.01), or per cent of the bounding box's diagonal (0.1%)
-    #[arg(long, value_name = "T", default_value = "0.1%", value_parser = tolerance, allow_hyphen_values = true)]
-    pub(crate) tolerance: Tolerance,
+    #[arg(long, value_name = "T", default_value = "0.1%", allow_hyphen_values = true)]
+    pub(crate) tolerance: String,
     /// The converter to use; `shapeloom graph` lists them
     #[arg(long, value_name = "NAME")]
     pub(crate) method: Option<String>,
@@ -84,6 +84,13 @@ pub(crate) struct WayArguments {
     /// An option of a converter on the way, as often as needed: key=value, or converter.key=value
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<(String, String)>,
+}
+
+impl WayArguments {
+    /// The tolerance as it was written. Read here and not by the parser, so that a wrong one has a code of its own.
+    pub(crate) fn tolerance(&self) -> Result<Tolerance, ToleranceError> {
+        self.tolerance.parse()
+    }
 }
 
 #[derive(Debug, Args)]
@@ -208,10 +215,6 @@ fn seconds(text: &str) -> Result<f64, String> {
         Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
         _ => Err(format!("found \"{text}\", expected a number of seconds above 0")),
     }
-}
-
-fn tolerance(text: &str) -> Result<Tolerance, String> {
-    text.parse().map_err(|error: shapeloom_core::ToleranceError| error.to_string())
 }
 
 fn setting(text: &str) -> Result<(String, String), String> {

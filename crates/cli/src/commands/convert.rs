@@ -18,6 +18,7 @@ use crate::session::Session;
 
 pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Result<(), Failure> {
     let format = output_format(&arguments.output, arguments.to.as_deref())?;
+    let tolerance = arguments.way.tolerance()?;
     let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
     let delivery = Delivery {
         output: &arguments.output,
@@ -28,7 +29,7 @@ pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Re
     };
     delivery.check(session)?;
     let wish = wish(&arguments.way, format.kinds)?;
-    let tolerance = arguments.way.tolerance.resolve(input.read.shape.bounds().diagonal())?;
+    let tolerance = tolerance.resolve(input.read.shape.bounds().diagonal())?;
     let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
     let source = json!({
         "name": input.name, "format": input.format.id, "bytes": input.bytes,

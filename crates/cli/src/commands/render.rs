@@ -17,6 +17,7 @@ use crate::output::{Output, check_free, stage_or_stream};
 use crate::session::Session;
 
 pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Result<(), Failure> {
+    let tolerance = arguments.way.tolerance()?;
     let look = look(arguments, session)?;
     let paths = match arguments.turntable {
         Some(_) if is_stream(&arguments.output) => {
@@ -32,7 +33,7 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     }
     paths.iter().try_for_each(|path| check_free(path, arguments.force))?;
     let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
-    let tolerance = arguments.way.tolerance.resolve(input.read.shape.bounds().diagonal())?;
+    let tolerance = tolerance.resolve(input.read.shape.bounds().diagonal())?;
     let job =
         Job { wish: wish(&arguments.way, &[Kind::TriMesh])?, tolerance, settings: arguments.way.settings.clone() };
     session.stage("converting");
