@@ -141,6 +141,78 @@ fn bilinear(field: &HeightField) -> Vec<DVec3> {
     points
 }
 
+/// No less than the distance from a point to a curved geometry: descent from the nearest of many samples for curves and
+/// patches, straight up or down for height fields. None for geometry that is made of straight pieces.
+pub fn to_curved(geometry: &Geometry, p: DVec3) -> Option<f64> {
+    match geometry {
+        Geometry::BezierCurve(curve) => {
+            let at = |[t, _]: [f64; 2]| bernstein(curve.control_points(), t);
+            Some(descend(&at, p, (0..=64).map(|k| [f64::from(k) / 64.0, 0.0])))
+        }
+        Geometry::BezierSurface(surface) => {
+            let nearest = surface.patches.iter().filter(|patch| !patch.control_points().is_empty()).map(|patch| {
+                let width = patch.degree_u() + 1;
+                let at = move |[u, v]: [f64; 2]| {
+                    let rows: Vec<DVec3> =
+                        patch.control_points().chunks_exact(width).map(|row| bernstein(row, u)).collect();
+                    bernstein(&rows, v)
+                };
+                let grid = (0..81).map(|k| [f64::from(k % 9) / 8.0, f64::from(k / 9) / 8.0]);
+                (patch.hull_bounds().distance_squared(p).sqrt(), at, grid)
+            });
+            let mut candidates: Vec<_> = nearest.collect();
+            candidates.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut best = f64::INFINITY;
+            for (lower, at, grid) in candidates {
+                if lower < best {
+                    best = best.min(descend(&at, p, grid));
+                }
+            }
+            Some(best)
+        }
+        Geometry::HeightField(field) => {
+            let (x, y) = (p.x / field.spacing().x, p.y / field.spacing().y);
+            let column = (x.floor() as u32).min(field.columns() - 2);
+            let row = (y.floor() as u32).min(field.rows() - 2);
+            let height = |i: u32, j: u32| field.sample(column + i, row + j).map(|sample| sample.z);
+            let (s, t) = (x - f64::from(column), y - f64::from(row));
+            let mix = |a: f64, b: f64, k: f64| a * (1.0 - k) + b * k;
+            let bottom = mix(height(0, 0)?, height(1, 0)?, s);
+            let top = mix(height(0, 1)?, height(1, 1)?, s);
+            Some((p.z - mix(bottom, top, t)).abs())
+        }
+        _ => None,
+    }
+}
+
+/// The smallest distance found on the way down from the nearest start.
+fn descend(at: &impl Fn([f64; 2]) -> DVec3, p: DVec3, starts: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let (mut best, mut here) = (f64::INFINITY, [0.0; 2]);
+    for start in starts {
+        let distance = at(start).distance(p);
+        if distance < best {
+            (best, here) = (distance, start);
+        }
+    }
+    // Pattern search: to the best neighbour, or half the step where none is better. Slow, and fooled by nothing.
+    let mut step = 0.125;
+    while step > 1e-9 {
+        let around = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)];
+        let moved = |(i, j): (i32, i32)| {
+            [(here[0] + f64::from(i) * step).clamp(0.0, 1.0), (here[1] + f64::from(j) * step).clamp(0.0, 1.0)]
+        };
+        let tried = around.map(moved).map(|there| (at(there).distance(p), there));
+        let (distance, there) =
+            tried.into_iter().fold((best, here), |least, new| if new.0 < least.0 { new } else { least });
+        if distance < best {
+            (best, here) = (distance, there);
+        } else {
+            step /= 2.0;
+        }
+    }
+    best
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
