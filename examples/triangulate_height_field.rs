@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut scene = Scene::default();
     for (diagonal, x) in [(Diagonal::First, 0.0), (Diagonal::Shorter, 1.12)] {
         let placed = field.clone().placed(Affine::from_translation(DVec3::X * x));
-        let converted = TriangulateHeightField { diagonal, ..TriangulateHeightField::new() }.convert(&placed)?;
+        let converted = TriangulateHeightField { diagonal }.convert(&placed)?;
         let (mesh, report) = (converted.value, converted.report);
         let counts = (mesh.positions().len(), mesh.triangles().len());
         println!("{diagonal:?}: {} vertices, {} triangles, error {}", counts.0, counts.1, report.deviation);
