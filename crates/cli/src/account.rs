@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use shapeloom_convert::{Conversion, Step};
-use shapeloom_core::{Aabb, Deviation, Findings, Loss, OptionSpec, OptionValue, Place, Report, Severity};
+use shapeloom_core::{Aabb, Deviation, Findings, Loss, OptionKind, OptionSpec, OptionValue, Place, Report, Severity};
 
 /// A number, or nothing where JSON has none for it.
 pub(crate) fn number(value: f64) -> Value {
@@ -54,13 +54,16 @@ pub(crate) fn option_value(value: &OptionValue) -> Value {
 }
 
 pub(crate) fn option_spec(spec: &OptionSpec) -> Value {
-    json!({
+    let mut object = json!({
         "name": spec.name,
         "doc": spec.doc,
         "takes": spec.kind.to_string(),
-        "bounds": spec.bounds.to_string(),
         "default": spec.default.as_ref().map(option_value),
-    })
+    });
+    if matches!(spec.kind, OptionKind::Float | OptionKind::Integer) {
+        object["bounds"] = json!(spec.bounds.to_string());
+    }
+    object
 }
 
 pub(crate) fn report(report: &Report) -> Value {

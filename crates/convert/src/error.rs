@@ -54,7 +54,7 @@ impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoWay { from, to, reachable } if reachable.is_empty() => {
-                write!(f, "found no way from {from} to {}: nothing can be made from a {from} yet", list(to))
+                write!(f, "found no way from {from} to {}: no converter makes another kind from a {from} yet", list(to))
             }
             Self::NoWay { from, to, reachable } => {
                 write!(f, "found no way from {from} to {}, only to {}", list(to), list(reachable))

@@ -69,9 +69,9 @@ impl Convert<TriMesh> for Weld {
             report.deviation = Deviation::AtMost(moved);
             report.basis = "the largest move of a vertex".to_owned();
         }
-        if !gone.iter().all(|triangle| trace_is_left(*triangle, &triangles, &mut None)) && moved > 0.0 {
+        if !traces_are_left(&gone, &triangles) {
             report.deviation = Deviation::Unknown;
-            report.basis = "whole parts of the surface collapsed and were dropped".to_owned();
+            report.basis = "parts of the surface collapsed to points or segments and were dropped".to_owned();
         }
 
         exec.check()?;
@@ -162,15 +162,15 @@ fn group_equal(positions: &[DVec3], exec: &Exec) -> Result<Groups, ConvertError>
     Ok(groups)
 }
 
-/// Whether what a collapsed triangle shrank to, a vertex or an edge, is still part of a triangle that is left.
-fn trace_is_left(gone: [u32; 3], left: &[[u32; 3]], edges: &mut Option<HashSet<(u32, u32)>>) -> bool {
-    let edges = edges.get_or_insert_with(|| {
-        let sides = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a), (a, a), (b, b), (c, c)];
-        left.iter().flat_map(|&triangle| sides(triangle)).map(|(a, b)| (a.min(b), a.max(b))).collect()
-    });
-    let [a, b, c] = gone;
-    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    edges.contains(&(low, high))
+/// Whether what each collapsed triangle shrank to, a vertex or an edge, is still part of a triangle that is left.
+fn traces_are_left(gone: &[[u32; 3]], left: &[[u32; 3]]) -> bool {
+    if gone.is_empty() {
+        return true;
+    }
+    let sides = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a), (a, a), (b, b), (c, c)];
+    let edges: HashSet<(u32, u32)> =
+        left.iter().flat_map(|&triangle| sides(triangle)).map(|(a, b)| (a.min(b), a.max(b))).collect();
+    gone.iter().all(|&[a, b, c]| edges.contains(&(a.min(b).min(c), a.max(b).max(c))))
 }
 
 /// Moves the vertex attributes about which merged vertices disagree to the wedges.
@@ -257,6 +257,9 @@ mod tests {
         let converted = Weld { distance: 0.1, ..Weld::new() }.convert(&mesh).unwrap();
         assert!(converted.value.triangles().is_empty());
         assert_eq!(converted.report.deviation, Deviation::Unknown);
+        // A segment that no triangle has as its side is lost as well, though nothing moves.
+        let mesh = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X], vec![[0, 1, 1]]).unwrap();
+        assert_eq!(Weld::new().convert(&mesh).unwrap().report.deviation, Deviation::Unknown);
     }
 
     #[test]

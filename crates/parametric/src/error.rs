@@ -104,7 +104,7 @@ impl fmt::Display for TessellationError {
                 write!(f, "found a need of {found:.3e} vertices, expected at most {}", u32::MAX - 1)
             }
             Self::TooManySegments { kind, index, found, allowed } => {
-                write!(f, "{kind} {index}: found a need of {found:.3e} segments, expected at most {allowed}")
+                write!(f, "{kind} {index}: found a need of {found:.0} segments along a side, expected at most {allowed}")
             }
         }
     }
@@ -129,6 +129,9 @@ impl Diagnostic for TessellationError {
     }
 
     fn advice(&self) -> Option<String> {
-        Some("ask for a larger tolerance".into())
+        Some(match self {
+            Self::TooManySegments { .. } => "ask for a larger tolerance, or raise the option max_segments".into(),
+            _ => "ask for a larger tolerance".into(),
+        })
     }
 }

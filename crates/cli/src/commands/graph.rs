@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use serde_json::json;
 use shapeloom_convert::registry;
+use shapeloom_core::OptionKind;
 use shapeloom_shape::Kind;
 
 use crate::account;
@@ -46,7 +47,11 @@ pub(crate) fn run(arguments: &GraphArguments, session: &mut Session<'_>) -> Resu
         let _ = writeln!(text, "  {}", converter.summary());
         for spec in converter.specs() {
             let default = spec.default.as_ref().map_or("from the tolerance".to_owned(), ToString::to_string);
-            let _ = writeln!(text, "  --set {}={default}  {}", spec.name, spec.doc);
+            let takes = match spec.kind {
+                OptionKind::Float | OptionKind::Integer => format!("{} {}", spec.kind, spec.bounds),
+                _ => spec.kind.to_string(),
+            };
+            let _ = writeln!(text, "  --set {}={default}  {} ({takes})", spec.name, spec.doc);
         }
     }
     session.print(text.trim_end())
