@@ -275,6 +275,17 @@ fn the_process_itself_keeps_the_contract() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("\nv "), "data on standard output");
     assert!(!String::from_utf8_lossy(&output.stderr).contains('\x1b'), "no bar where there is no terminal");
 
+    // A reader that has had enough is no failure.
+    let mut child = Command::new(program)
+        .args(["graph", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+
     let folder = tempfile::tempdir().expect("a temporary folder");
     let glb = folder.path().join("slow.glb").display().to_string();
     let words =

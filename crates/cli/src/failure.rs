@@ -13,6 +13,8 @@ use crate::Streams;
 pub(crate) enum Failure {
     /// Some crate's own error, and the file that it is about if its text does not name it.
     Narrow { error: ConvertError, file: Option<PathBuf> },
+    /// Whoever read standard output has had enough: nothing to tell, and no failure of ours.
+    PipeClosed,
     /// An error of the command line itself.
     Own { code: &'static str, category: Category, message: String, advice: Option<String> },
 }
@@ -40,6 +42,13 @@ impl Failure {
         }
     }
 
+    pub(crate) fn stream(error: &std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::BrokenPipe => Self::PipeClosed,
+            _ => Self::write("standard output".as_ref(), error),
+        }
+    }
+
     pub(crate) fn exists(path: &Path) -> Self {
         Self::Own {
             code: "E-output-exists",
@@ -57,22 +66,24 @@ impl Failure {
         }
     }
 
-    fn category(&self) -> Category {
+    fn category(&self) -> Option<Category> {
         match self {
-            Self::Narrow { error, .. } => error.category(),
-            Self::Own { category, .. } => *category,
+            Self::Narrow { error, .. } => Some(error.category()),
+            Self::PipeClosed => None,
+            Self::Own { category, .. } => Some(*category),
         }
     }
 
     pub(crate) fn exit_code(&self) -> u8 {
         match self.category() {
-            Category::Usage => 2,
-            Category::Malformed => 3,
-            Category::Unsupported => 4,
-            Category::Failed => 5,
-            Category::CannotWrite => 6,
-            Category::OverLimit => 7,
-            Category::Cancelled => 130,
+            None => 0,
+            Some(Category::Usage) => 2,
+            Some(Category::Malformed) => 3,
+            Some(Category::Unsupported) => 4,
+            Some(Category::Failed) => 5,
+            Some(Category::CannotWrite) => 6,
+            Some(Category::OverLimit) => 7,
+            Some(Category::Cancelled) => 130,
         }
     }
 
@@ -81,6 +92,7 @@ impl Failure {
         let (code, mut message, advice) = match self {
             Self::Narrow { error, .. } => (error.diagnostic().code(), error.to_string(), error.diagnostic().advice()),
             Self::Own { code, message, advice, .. } => (*code, message.clone(), advice.clone()),
+            Self::PipeClosed => return,
         };
         if let Self::Narrow { file: Some(file), .. } = self {
             let name = file.display().to_string();
@@ -100,7 +112,7 @@ impl Failure {
                 "schema": "shapeloom.error/1",
                 "error": {
                     "code": code,
-                    "category": self.category().phrase(),
+                    "category": self.category().map(Category::phrase),
                     "message": message,
                     "advice": advice,
                     "exit_code": self.exit_code(),

@@ -95,7 +95,7 @@ pub(crate) fn stage_or_stream(
         write(&mut whole).map_err(|failure| failure.about(path))?;
         let out = &mut session.streams.out;
         let sent = out.write_all(&whole).and_then(|()| out.flush());
-        sent.map_err(|error| Failure::write("standard output".as_ref(), &error))?;
+        sent.map_err(|error| Failure::stream(&error))?;
         Ok(None)
     } else {
         Output::stage(path, force, write).map(Some)

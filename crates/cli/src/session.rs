@@ -90,7 +90,7 @@ impl<'a> Session<'a> {
     pub(crate) fn print(&mut self, text: impl Display) -> Result<(), Failure> {
         self.progress.clear();
         let written = writeln!(self.streams.out, "{text}").and_then(|()| self.streams.out.flush());
-        written.map_err(|error| Failure::write("standard output".as_ref(), &error))
+        written.map_err(|error| Failure::stream(&error))
     }
 
     /// Prints one JSON object on standard output.

@@ -104,7 +104,10 @@ impl fmt::Display for TessellationError {
                 write!(f, "found a need of {found:.3e} vertices, expected at most {}", u32::MAX - 1)
             }
             Self::TooManySegments { kind, index, found, allowed } => {
-                write!(f, "{kind} {index}: found a need of {found:.0} segments along a side, expected at most {allowed}")
+                write!(
+                    f,
+                    "{kind} {index}: found a need of {found:.0} segments along a side, expected at most {allowed}"
+                )
             }
         }
     }
