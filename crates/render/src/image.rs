@@ -54,7 +54,7 @@ impl Image {
     pub fn to_png(&self) -> Result<Vec<u8>, RenderError> {
         let mut bytes = Vec::new();
         let encoder =
-            PngEncoder::new_with_quality(Cursor::new(&mut bytes), CompressionType::Default, FilterType::Adaptive);
+            PngEncoder::new_with_quality(Cursor::new(&mut bytes), CompressionType::Best, FilterType::Adaptive);
         let opaque = self.pixels.iter().all(|pixel| pixel[3] == u8::MAX);
         let written = if opaque {
             let colors: Vec<u8> = self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
