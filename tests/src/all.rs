@@ -3,6 +3,7 @@
 //! Documents that are made from tables are compared with what the tables say; with `SHAPELOOM_BLESS=1` in the
 //! environment they are written anew instead.
 
+mod attacks;
 mod bench;
 mod codes;
 mod command_line;

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use shapeloom_core::{Tolerance, ToleranceError};
+use shapeloom_core::{ChoiceOption, Tolerance, ToleranceError};
+use shapeloom_render::Mode;
 
 /// Represents shapes in many forms, converts any of them into any other, and says what each conversion cost.
 #[derive(Debug, Parser)]
@@ -145,7 +147,7 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "AZ,EL", value_parser = view, allow_hyphen_values = true)]
     pub(crate) view: Option<(f64, f64)>,
     /// How surfaces appear
-    #[arg(long, value_name = "MODE", value_parser = mode)]
+    #[arg(long, value_name = "MODE", value_parser = PossibleValuesParser::new(<Mode as ChoiceOption>::NAMES))]
     pub(crate) mode: Option<String>,
     /// Draw the sides of triangles over the surface
     #[arg(long)]
@@ -236,16 +238,6 @@ fn view(text: &str) -> Result<(f64, f64), String> {
     text.split_once(',')
         .and_then(|(azimuth, elevation)| Some((angle(azimuth)?, angle(elevation)?)))
         .ok_or_else(|| format!("found \"{text}\", expected two angles in degrees such as 30,20"))
-}
-
-fn mode(text: &str) -> Result<String, String> {
-    use shapeloom_core::ChoiceOption;
-    let names = shapeloom_render::Mode::NAMES;
-    if names.contains(&text) {
-        Ok(text.to_owned())
-    } else {
-        Err(format!("found \"{text}\", expected one of {}", names.join(", ")))
-    }
 }
 
 #[cfg(test)]

@@ -42,6 +42,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-output-exists", "The output exists already; --force replaces it."),
     ("E-output-format", "The output's format can be read but not written yet."),
     ("E-output-write", "The output cannot be written: a folder cannot be made, is not writable, or the disk is full."),
+    ("E-picture-format", "Pictures are written as PNG; give the output that extension."),
     ("E-picture-empty", "Nothing in the shape has a surface that could be drawn."),
     ("E-plan-method", "No converter has the name given with --method; `shapeloom graph` lists them."),
     ("E-plan-no-way", "No chain of converters leads from what the input holds to what the output format can hold."),
@@ -64,6 +65,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-tessellation-rounding",
         "The tolerance is smaller than the rounding of coordinates at this size; no mesh meets it.",
+    ),
+    (
+        "E-tessellation-overflow",
+        "Control points are so far apart that their differences overflow; scale the shape down.",
     ),
     ("E-tessellation-segments", "A curve or patch needs more segments than its option max_segments allows."),
     ("E-tessellation-size", "The tolerance asks for more vertices than 32-bit ids can tell apart."),

@@ -32,7 +32,9 @@ pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -
     let limits = session.limits();
     let (name, bytes) = if is_stream(path) {
         let name = "standard input".to_owned();
-        (name, slurp(&mut session.streams.input, &limits).map_err(|error| Failure::from(error).about(path))?)
+        let bytes = slurp(&mut session.streams.input, &limits);
+        let bytes = bytes.map_err(|error| Failure::from(error).about(name.as_ref()))?;
+        (name, bytes)
     } else {
         let file = File::open(path).map_err(|error| Failure::read(path, &error))?;
         if file.metadata().is_ok_and(|data| data.is_dir()) {

@@ -1,103 +1,185 @@
-//! Writing outputs: whole or not at all.
+//! Writing outputs: each whole or not at all.
 
-use std::io::{BufWriter, ErrorKind, Write};
+use std::fs::{self, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, SpooledTempFile, TempPath};
 
 use crate::failure::Failure;
 use crate::input::is_stream;
 use crate::session::Session;
 
-/// A file that appears under its name only when it is complete.
+/// An output that is complete and waits to be given its place.
 pub(crate) struct Output {
     path: PathBuf,
-    file: NamedTempFile,
-    force: bool,
+    pending: Pending,
 }
+
+enum Pending {
+    /// A temporary file beside the file that it becomes.
+    File { staged: TempPath, target: PathBuf, force: bool },
+    /// Bytes for standard output, or for a device or pipe that exists: those cannot be replaced, only written to.
+    Through(SpooledTempFile),
+}
+
+/// What is spooled stays in memory up to this many bytes.
+const SPOOL: usize = 1 << 20;
 
 /// Refuses an output that exists, before any work is done for it.
 pub(crate) fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
     if is_stream(path) {
         return Ok(());
     }
-    match path.symlink_metadata() {
+    match path.metadata() {
         Ok(data) if data.is_dir() => {
-            Err(Failure::write(path, &std::io::Error::new(ErrorKind::IsADirectory, "it is a folder")))
+            Err(Failure::write(path, &io::Error::new(ErrorKind::IsADirectory, "it is a folder")))
         }
-        Ok(_) if !force => Err(Failure::exists(path)),
+        Ok(data) if data.is_file() && !force => Err(Failure::exists(path)),
+        // A link that leads nowhere is there all the same.
+        Err(_) if !force && path.symlink_metadata().is_ok() => Err(Failure::exists(path)),
         _ => Ok(()),
     }
 }
 
-/// Refuses two outputs of one name, one of which would be lost.
+/// Refuses two outputs of one name, however it is spelled: one of them would be lost.
 pub(crate) fn check_apart(paths: &[&Path]) -> Result<(), Failure> {
-    for (i, path) in paths.iter().enumerate() {
-        if paths[..i].contains(path) {
-            let message = format!("{}: found as the name of two outputs, expected each once", path.display());
+    let places: Vec<PathBuf> = paths.iter().map(|path| place(path)).collect();
+    for (i, place) in places.iter().enumerate() {
+        if places[..i].contains(place) {
+            let message = format!("{}: found as the name of two outputs, expected each once", paths[i].display());
             return Err(Failure::usage("E-usage-outputs", message));
         }
     }
     Ok(())
 }
 
-impl Output {
-    /// Writes a temporary file beside the place where it belongs; missing folders are made.
-    pub(crate) fn stage(
-        path: &Path,
-        force: bool,
-        write: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
-    ) -> Result<Self, Failure> {
-        let folder = match path.parent() {
-            Some(folder) if !folder.as_os_str().is_empty() => folder,
-            _ => Path::new("."),
-        };
-        std::fs::create_dir_all(folder).map_err(|error| Failure::write(path, &error))?;
-        let mut builder = Builder::new();
-        builder.prefix(".shapeloom-");
-        #[cfg(unix)]
-        {
-            // As any new file: what the user's mask leaves, not the private mode of temporary files.
-            use std::os::unix::fs::PermissionsExt;
-            builder.permissions(std::fs::Permissions::from_mode(0o666));
-        }
-        let mut file = builder.tempfile_in(folder).map_err(|error| Failure::write(path, &error))?;
-        {
-            let mut buffered = BufWriter::with_capacity(1 << 16, file.as_file_mut());
-            write(&mut buffered).map_err(|failure| failure.about(path))?;
-            buffered.flush().map_err(|error| Failure::write(path, &error))?;
-        }
-        Ok(Self { path: path.to_owned(), file, force })
+/// Where a path leads, as far as it exists; the rest by its words.
+fn place(path: &Path) -> PathBuf {
+    if is_stream(path) {
+        return path.to_owned();
     }
-
-    /// Gives the file its name.
-    pub(crate) fn commit(self) -> Result<(), Failure> {
-        let Self { path, file, force } = self;
-        let result = if force { file.persist(&path) } else { file.persist_noclobber(&path) };
-        match result {
-            Ok(_) => Ok(()),
-            Err(failed) if failed.error.kind() == ErrorKind::AlreadyExists => Err(Failure::exists(&path)),
-            Err(failed) => Err(Failure::write(&path, &failed.error)),
+    if let Ok(place) = path.canonicalize() {
+        return place;
+    }
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut resolved = folder.canonicalize().unwrap_or_default();
+    if resolved.as_os_str().is_empty() {
+        resolved = std::path::absolute(".").unwrap_or_default();
+        for part in folder.components() {
+            match part {
+                std::path::Component::ParentDir => {
+                    resolved.pop();
+                }
+                part => resolved.push(part),
+            }
         }
     }
+    resolved.join(path.file_name().unwrap_or_default())
 }
 
-/// Writes to a file, to be committed, or at once to standard output.
-pub(crate) fn stage_or_stream(
+/// Writes a complete output: a temporary file beside the place where it belongs, for which missing folders are made, or
+/// a spool for standard output, devices and pipes.
+pub(crate) fn stage(
     path: &Path,
     force: bool,
-    session: &mut Session<'_>,
     write: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
-) -> Result<Option<Output>, Failure> {
-    if is_stream(path) {
-        // Nothing half-done on standard output either: a pipe cannot take it back.
-        let mut whole = Vec::new();
-        write(&mut whole).map_err(|failure| failure.about(path))?;
-        let out = &mut session.streams.out;
-        let sent = out.write_all(&whole).and_then(|()| out.flush());
-        sent.map_err(|error| Failure::stream(&error))?;
-        Ok(None)
+) -> Result<Output, Failure> {
+    let special = path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir());
+    let pending = if is_stream(path) || special {
+        let mut spool = SpooledTempFile::new(SPOOL);
+        write_buffered(path, &mut spool, write)?;
+        Pending::Through(spool)
     } else {
-        Output::stage(path, force, write).map(Some)
+        let (staged, target) = stage_file(path, write)?;
+        Pending::File { staged, target, force }
+    };
+    Ok(Output { path: path.to_owned(), pending })
+}
+
+fn write_buffered(
+    path: &Path,
+    out: &mut impl Write,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let mut buffered = BufWriter::with_capacity(1 << 16, out);
+    write(&mut buffered).map_err(|failure| failure.about(path))?;
+    buffered.flush().map_err(|error| Failure::write(path, &error))
+}
+
+fn stage_file(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
+) -> Result<(TempPath, PathBuf), Failure> {
+    // Through links to the file itself, so that the link stays.
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    // The library's own texts name its temporary file, which means nothing to the user.
+    let told = |error: io::Error| Failure::write(path, &io::Error::from(error.kind()));
+    fs::create_dir_all(folder).map_err(|error| Failure::write(path, &error))?;
+    let mut builder = Builder::new();
+    builder.prefix(".shapeloom-");
+    #[cfg(unix)]
+    {
+        // As any new file: what the user's mask leaves, not the private mode of temporary files.
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
     }
+    let mut file = builder.tempfile_in(folder).map_err(told)?;
+    write_buffered(path, file.as_file_mut(), write)?;
+    if let Ok(data) = target.metadata() {
+        // A file that is replaced keeps its mode; where that is not allowed the new one's will do.
+        let _ = file.as_file().set_permissions(data.permissions());
+    }
+    // Only the name is kept: many outputs may wait at a time.
+    Ok((file.into_temp_path(), target))
+}
+
+/// Gives every output its place, files first. If one cannot be placed, those that were new are taken back.
+pub(crate) fn commit(outputs: Vec<Output>, session: &mut Session<'_>) -> Result<(), Failure> {
+    let mut made: Vec<PathBuf> = Vec::new();
+    let mut through = Vec::new();
+    for Output { path, pending } in outputs {
+        let (staged, target, force) = match pending {
+            Pending::File { staged, target, force } => (staged, target, force),
+            Pending::Through(spool) => {
+                through.push((path, spool));
+                continue;
+            }
+        };
+        let new = !target.exists();
+        let result = if force { staged.persist(&target) } else { staged.persist_noclobber(&target) };
+        match result {
+            Ok(()) if new => made.push(target),
+            Ok(()) => {}
+            Err(failed) => {
+                for file in made {
+                    let _ = fs::remove_file(file);
+                }
+                return Err(match failed.error.kind() {
+                    ErrorKind::AlreadyExists => Failure::exists(&path),
+                    kind => Failure::write(&path, &io::Error::from(kind)),
+                });
+            }
+        }
+    }
+    for (path, mut spool) in through {
+        spool.rewind().map_err(|error| Failure::write(&path, &error))?;
+        if is_stream(&path) {
+            let out = &mut session.streams.out;
+            let sent = io::copy(&mut spool, out).and_then(|_| out.flush());
+            sent.map_err(|error| Failure::stream(&error))?;
+        } else {
+            let opened = OpenOptions::new().write(true).open(&path);
+            let sent = opened.and_then(|mut device| io::copy(&mut spool, &mut device).and_then(|_| device.flush()));
+            sent.map_err(|error| Failure::write(&path, &error))?;
+        }
+    }
+    Ok(())
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::{DVec2, DVec3};
 
-use crate::{Aabb, Category, Diagnostic, Frame, Ray};
+use crate::{Aabb, Category, Diagnostic, Frame, Ray, VectorWords};
 
 /// How a camera maps directions to the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -172,8 +172,10 @@ impl fmt::Display for CameraError {
         match self {
             Self::View { eye, target, up } => write!(
                 f,
-                "camera: found eye {eye}, target {target} and up {up}, expected finite points apart and an up direction \
-                 across the view"
+                "camera: found eye {}, target {} and up {}, expected finite points apart and an up direction across the view",
+                VectorWords(*eye),
+                VectorWords(*target),
+                VectorWords(*up)
             ),
             Self::FieldOfView { found } => {
                 write!(f, "camera: found an angle of view of {found} radians, expected one between 0 and pi")
@@ -184,7 +186,8 @@ impl fmt::Display for CameraError {
             Self::Bounds { bounds, aspect } => write!(
                 f,
                 "camera: found bounds {} to {} and aspect {aspect}, expected a finite box and a positive aspect",
-                bounds.min, bounds.max
+                VectorWords(bounds.min),
+                VectorWords(bounds.max)
             ),
         }
     }

@@ -27,6 +27,7 @@ mod frame;
 mod homogeneous;
 mod interval;
 mod limits;
+mod number_words;
 mod options;
 mod place;
 mod ray;
@@ -49,6 +50,7 @@ pub use glam;
 pub use homogeneous::{Combination, Homogeneous, HomogeneousError};
 pub use interval::Interval;
 pub use limits::Limits;
+pub use number_words::{VectorWords, Words};
 #[doc(hidden)]
 pub use options::declare::private as options_private;
 pub use options::{Bounds, ChoiceOption, OptionError, OptionKind, OptionSpec, OptionType, OptionValue, Options};

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glam::DVec3;
 
-use crate::{Category, Diagnostic, Interval};
+use crate::{Category, Diagnostic, Interval, VectorWords};
 
 /// A half-line with a direction of unit length, and the stretch of it that counts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +65,8 @@ impl fmt::Display for RayError {
         write!(
             f,
             "ray: found origin {} and direction {}, expected finite numbers and a direction with a length",
-            self.origin, self.direction
+            VectorWords(self.origin),
+            VectorWords(self.direction)
         )
     }
 }

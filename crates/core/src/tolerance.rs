@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::{Category, Diagnostic};
+use crate::{Category, Diagnostic, Words};
 
 /// A tolerance in model units, or relative to the diagonal of the shape's bounding box.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ impl Tolerance {
                 value if usable(value) => Ok(value),
                 _ => Err(ToleranceError::NoScale { diagonal }),
             },
-            Self::Absolute(value) => Err(ToleranceError::NotPositive { found: value.to_string() }),
+            Self::Absolute(value) => Err(ToleranceError::NotPositive { found: Words(value).to_string() }),
             Self::OfDiagonal(fraction) => Err(ToleranceError::NotPositive { found: format!("{}%", fraction * 100.0) }),
         }
     }
@@ -54,7 +54,7 @@ impl FromStr for Tolerance {
 impl fmt::Display for Tolerance {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Absolute(value) => write!(f, "{value}"),
+            Self::Absolute(value) => write!(f, "{}", Words(*value)),
             Self::OfDiagonal(fraction) => write!(f, "{}%", fraction * 100.0),
         }
     }
@@ -90,7 +90,11 @@ impl fmt::Display for ToleranceError {
                 write!(f, "tolerance: found {found}, expected a finite number above 0")
             }
             Self::NoScale { diagonal } => {
-                write!(f, "tolerance: found one in per cent, but the shape's bounding box has the diagonal {diagonal}")
+                write!(
+                    f,
+                    "tolerance: found one in per cent, but the shape's bounding box has the diagonal {}",
+                    Words(*diagonal)
+                )
             }
         }
     }

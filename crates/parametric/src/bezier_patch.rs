@@ -1,7 +1,7 @@
 //! Tensor-product Bézier patches.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Aabb, Affine, Interval, Surface, SurfaceJet};
+use shapeloom_core::{Aabb, Affine, Interval, Surface, SurfaceJet, VectorSpace};
 
 use crate::de_casteljau::{self, MAX_DEGREE};
 use crate::{BezierCurve, BezierError, PatchSide};
@@ -189,22 +189,18 @@ impl BezierPatch {
         for j in 0..=n {
             for i in 0..=m {
                 if i >= 2 {
-                    uu = uu.max((at(i, j) - 2.0 * at(i - 1, j) + at(i - 2, j)).length_squared());
+                    uu = uu.max(VectorSpace::length(at(i, j) - 2.0 * at(i - 1, j) + at(i - 2, j)));
                 }
                 if j >= 2 {
-                    vv = vv.max((at(i, j) - 2.0 * at(i, j - 1) + at(i, j - 2)).length_squared());
+                    vv = vv.max(VectorSpace::length(at(i, j) - 2.0 * at(i, j - 1) + at(i, j - 2)));
                 }
                 if i >= 1 && j >= 1 {
-                    uv = uv.max(((at(i, j) - at(i - 1, j)) - (at(i, j - 1) - at(i - 1, j - 1))).length_squared());
+                    uv = uv.max(VectorSpace::length((at(i, j) - at(i - 1, j)) - (at(i, j - 1) - at(i - 1, j - 1))));
                 }
             }
         }
         let (m, n) = (m as f64, n as f64);
-        SecondDerivativeBounds {
-            uu: m * (m - 1.0).max(0.0) * uu.sqrt(),
-            uv: m * n * uv.sqrt(),
-            vv: n * (n - 1.0).max(0.0) * vv.sqrt(),
-        }
+        SecondDerivativeBounds { uu: m * (m - 1.0).max(0.0) * uu, uv: m * n * uv, vv: n * (n - 1.0).max(0.0) * vv }
     }
 
     /// The unit normal at `(u, v)`, or where the patch degenerates there the limit towards its middle, found by
@@ -225,8 +221,12 @@ impl BezierPatch {
 
 /// The unit normal across two tangents of a patch of that size; none where they do not span a plane.
 pub(crate) fn tangent_normal(du: DVec3, dv: DVec3, size: f64) -> Option<DVec3> {
+    if !(size > 0.0 && size.is_finite()) {
+        return None;
+    }
+    let (du, dv) = (du / size, dv / size);
     // A tangent of this length relative to the patch is rounding: collapsed sides evaluate to about 1e-16.
-    let long = |tangent: DVec3| tangent.length() > 1e-12 * size;
+    let long = |tangent: DVec3| tangent.length() > 1e-12;
     if long(du) && long(dv) { du.cross(dv).try_normalize() } else { None }
 }
 

@@ -16,6 +16,8 @@ const MAX_DEPTH: u32 = 64;
 ///
 /// Corners of a net lie on its surface, so their box is inside the true one; the hull of a net is outside it. Nets whose
 /// hull reaches beyond the box known so far are split until it does not.
+///
+/// Cost: bounded, see the budget inside; a handful of splits for each of six directions in practice.
 pub(crate) fn tight_bounds<'a>(nets: impl IntoIterator<Item = (usize, &'a [DVec3])> + Clone) -> Aabb {
     let corners = |width: usize, net: &[DVec3]| {
         let last = net.len() - 1;
@@ -27,6 +29,9 @@ pub(crate) fn tight_bounds<'a>(nets: impl IntoIterator<Item = (usize, &'a [DVec3
     let hulls =
         nets.clone().into_iter().map(|(_, net)| Aabb::from_points(net.iter().copied())).fold(inner, Aabb::union);
     let slack = SLACK * hulls.diagonal();
+    // Nets of very high degree take long to split: past this much work hulls are taken as they are, which is safe.
+    let points: usize = nets.clone().into_iter().map(|(_, net)| net.len()).sum();
+    let mut budget = (1usize << 28) + 1024 * points;
     let mut stack: Vec<(u32, usize, Vec<DVec3>)> = Vec::new();
     for (width, net) in nets {
         stack.push((0, width, net.to_vec()));
@@ -34,10 +39,12 @@ pub(crate) fn tight_bounds<'a>(nets: impl IntoIterator<Item = (usize, &'a [DVec3
             inner = corners(width, &net).into_iter().fold(inner, Aabb::including);
             let hull = Aabb::from_points(net.iter().copied());
             let room = inner.padded(slack);
-            if depth >= MAX_DEPTH || (room.contains(hull.min) && room.contains(hull.max)) {
+            let work = net.len() * (width + net.len() / width);
+            if depth >= MAX_DEPTH || work > budget || (room.contains(hull.min) && room.contains(hull.max)) {
                 outer = outer.union(hull);
                 continue;
             }
+            budget -= work;
             let (width, after) = split(width, net, &mut stack, depth);
             stack.push((depth + 1, width, after));
         }

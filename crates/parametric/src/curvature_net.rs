@@ -1,7 +1,7 @@
 //! Control nets of second derivatives, for bounds over parts of a patch.
 
-use shapeloom_core::Interval;
 use shapeloom_core::glam::DVec3;
+use shapeloom_core::{Interval, VectorSpace};
 
 use crate::{BezierPatch, SecondDerivativeBounds, de_casteljau};
 
@@ -54,7 +54,12 @@ impl Net {
 }
 
 fn longest(vectors: &[DVec3]) -> f64 {
-    vectors.iter().map(|vector| vector.length_squared()).fold(0.0, f64::max).sqrt()
+    let squares = vectors.iter().map(|vector| vector.length_squared()).fold(0.0, f64::max);
+    if (1e-280..1e280).contains(&squares) {
+        return squares.sqrt();
+    }
+    // Squares that vanish or overflow say nothing of the lengths.
+    vectors.iter().map(|&vector| VectorSpace::length(vector)).fold(0.0, f64::max)
 }
 
 /// Space for [`CurvatureNets::bounds`] to work in. It keeps the nets as they were last restricted in v: pieces of a patch
@@ -96,6 +101,13 @@ impl CurvatureNets {
             Net::new(m + 1 - along_u, vectors)
         };
         Self { uu: net(2, 0), uv: net(1, 1), vv: net(0, 2) }
+    }
+
+    /// How many multiplications [`CurvatureNets::bounds`] takes, roughly.
+    pub(crate) fn work(&self) -> usize {
+        let net = &self.uv;
+        let height = net.vectors.len() / net.width.max(1);
+        64 + 6 * net.vectors.len() * (net.width + height)
     }
 
     /// Bounds over the whole patch.

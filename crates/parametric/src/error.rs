@@ -75,6 +75,13 @@ pub enum TessellationError {
         /// The rounding of an evaluation, which the certificate must cover.
         rounding: f64,
     },
+    /// Control points so far apart that their differences overflow.
+    TooLarge {
+        /// What kind of element: a curve, a patch.
+        kind: &'static str,
+        /// Which one.
+        index: usize,
+    },
     /// More vertices or triangles than ids of 32 bits can tell apart.
     TooManyElements {
         /// How many, as far as they were counted.
@@ -100,6 +107,12 @@ impl fmt::Display for TessellationError {
                 f,
                 "chord tolerance: found {tolerance:e}, expected more than {rounding:.3e}, the rounding of a point at this size"
             ),
+            Self::TooLarge { kind, index } => {
+                write!(
+                    f,
+                    "{kind} {index}: found control points whose differences overflow, expected coordinates below 1e300"
+                )
+            }
             Self::TooManyElements { found } => {
                 write!(f, "found a need of {found:.3e} vertices, expected at most {}", u32::MAX - 1)
             }
@@ -119,6 +132,7 @@ impl Diagnostic for TessellationError {
     fn code(&self) -> &'static str {
         match self {
             Self::BelowRounding { .. } => "E-tessellation-rounding",
+            Self::TooLarge { .. } => "E-tessellation-overflow",
             Self::TooManyElements { .. } => "E-tessellation-size",
             Self::TooManySegments { .. } => "E-tessellation-segments",
         }
@@ -126,13 +140,14 @@ impl Diagnostic for TessellationError {
 
     fn category(&self) -> Category {
         match self {
-            Self::BelowRounding { .. } => Category::Failed,
+            Self::BelowRounding { .. } | Self::TooLarge { .. } => Category::Failed,
             Self::TooManyElements { .. } | Self::TooManySegments { .. } => Category::OverLimit,
         }
     }
 
     fn advice(&self) -> Option<String> {
         Some(match self {
+            Self::TooLarge { .. } => "scale the shape down".into(),
             Self::TooManySegments { .. } => "ask for a larger tolerance, or raise the option max_segments".into(),
             _ => "ask for a larger tolerance".into(),
         })

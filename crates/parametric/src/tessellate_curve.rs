@@ -41,7 +41,11 @@ impl<P: VectorSpace> Convert<BezierCurve<P>> for TessellateCurve {
         self.validate()?;
         let rounding = rounding(source.control_points(), source.degree());
         let share = chord_share(self.chord_tolerance, rounding)?;
-        let found = segments_for(source.second_derivative_bound(), share).max(f64::from(fewest_segments(source)));
+        let bound = source.second_derivative_bound();
+        if !bound.is_finite() {
+            return Err(TessellationError::TooLarge { kind: "curve", index: 0 }.into());
+        }
+        let found = segments_for(bound, share).max(f64::from(fewest_segments(source)));
         if found > f64::from(self.max_segments) {
             let allowed = self.max_segments;
             return Err(TessellationError::TooManySegments { kind: "curve", index: 0, found, allowed }.into());
@@ -77,7 +81,9 @@ impl<P: VectorSpace> Convert<BezierCurve<P>> for TessellateCurve {
 /// A bound of how far de Casteljau's algorithm rounds: a few units in the last place a round.
 pub(crate) fn rounding<P: VectorSpace>(control: &[P], rounds: usize) -> f64 {
     let size = control.iter().map(|point| point.to_space().abs().max_element()).fold(0.0, f64::max);
-    4.0 * (rounds as f64 + 2.0) * f64::EPSILON * size
+    // Where numbers themselves are about to vanish their rounding no longer shrinks with them.
+    let vanishing = if size > 0.0 { (rounds as f64 + 2.0) * f64::MIN_POSITIVE } else { 0.0 };
+    4.0 * (rounds as f64 + 2.0) * f64::EPSILON * size + vanishing
 }
 
 /// The part of a tolerance that chords may use: what rounding leaves.

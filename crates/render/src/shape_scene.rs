@@ -1,7 +1,7 @@
 //! Shapes as scenes.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Convert, ConvertError, Exec};
+use shapeloom_core::{Convert, ConvertError, Exec, Reservation};
 use shapeloom_mesh::{Domain, NORMAL, TriMesh, VertexNormals};
 use shapeloom_shape::{Representation, Shape};
 
@@ -15,11 +15,26 @@ const CREASE: f64 = 40.0;
 ///
 /// Normals are the mesh's own, on wedges or vertices; a mesh without gets them from its faces, creased at 40 degrees.
 ///
+/// The scene holds a copy of every instance; the reservation that comes with it is for its memory.
+///
 /// # Errors
-/// A part of another kind: pictures are of triangles, convert first. A position that is not finite.
-pub fn scene_of_shape(shape: &Shape) -> Result<Scene, ConvertError> {
+/// A part of another kind: pictures are of triangles, convert first. A position that is not finite. Too little memory in
+/// the budget, or the reason to stop.
+pub fn scene_of_shape(shape: &Shape, exec: &Exec) -> Result<(Scene, Reservation), ConvertError> {
+    let mut bytes = 0u64;
+    for part in &shape.parts {
+        let mesh = TriMesh::from_geometry(&part.geometry)?;
+        let corners = mesh.triangles().len() * 3;
+        // Positions, indices and normals; and the placed mesh while it is copied, for the largest part.
+        let scene = size_of_val(mesh.positions()) + corners * (4 + size_of::<DVec3>());
+        bytes = bytes.saturating_add(scene as u64);
+    }
+    let largest = shape.parts.iter().map(|part| part.geometry.memory_bytes() as u64).max().unwrap_or(0);
+    let memory = exec.reserve(bytes)?;
+    let _placing = exec.reserve(largest.saturating_mul(2))?;
     let mut scene = Scene::default();
     for part in &shape.parts {
+        exec.check()?;
         let placed = part.placed();
         let mesh = TriMesh::from_geometry(&placed)?;
         let material = part.material.and_then(|index| shape.materials.get(index as usize));
@@ -28,16 +43,16 @@ pub fn scene_of_shape(shape: &Shape) -> Result<Scene, ConvertError> {
             [red, green, blue]
         });
         scene.surfaces.push(SceneMesh {
-            normals: Some(corner_normals(mesh)?),
+            normals: Some(corner_normals(mesh, exec)?),
             color,
             ..SceneMesh::new(mesh.positions().to_vec(), mesh.triangles().to_vec())
         });
     }
-    Ok(scene)
+    Ok((scene, memory))
 }
 
 /// A normal for each corner of each triangle.
-fn corner_normals(mesh: &TriMesh) -> Result<Vec<DVec3>, ConvertError> {
+fn corner_normals(mesh: &TriMesh, exec: &Exec) -> Result<Vec<DVec3>, ConvertError> {
     if let Some(normals) = mesh.attribute(Domain::Wedge, NORMAL).filter(|column| column.width() == 3) {
         return Ok((0..normals.len()).map(|wedge| normals.vector(wedge)).collect());
     }
@@ -46,7 +61,7 @@ fn corner_normals(mesh: &TriMesh) -> Result<Vec<DVec3>, ConvertError> {
         return Ok(corners.iter().map(|&vertex| normals.vector(vertex as usize)).collect());
     }
     let creased = VertexNormals { crease_angle: CREASE, ..VertexNormals::new() };
-    let made = creased.convert_with(mesh, &Exec::default())?.value;
+    let made = creased.convert_with(mesh, exec)?.value;
     let normals = made.attribute(Domain::Wedge, NORMAL);
     Ok(normals.map_or(Vec::new(), |normals| (0..normals.len()).map(|wedge| normals.vector(wedge)).collect()))
 }
@@ -68,24 +83,31 @@ mod tests {
         let part = Part { placement: Affine::from_translation(DVec3::Z), material: Some(0), ..Part::new(triangle()) };
         let lost = Part { material: Some(9), ..Part::new(triangle()) };
         let shape = Shape { parts: vec![part, lost], materials: vec![red], ..Shape::default() };
-        let scene = scene_of_shape(&shape).unwrap();
+        let scene = scene_of_shape(&shape, &Exec::default()).unwrap().0;
         assert_eq!(scene.surfaces[0].positions[0], DVec3::Z);
         assert_eq!((scene.surfaces[0].color, scene.surfaces[1].color), ([1.0, 0.0, 0.0], SceneMesh::GLAZE));
     }
 
     #[test]
     fn normals_are_the_meshs_own_or_its_facets() {
-        let facets = scene_of_shape(&Shape::new(Part::new(triangle()))).unwrap();
+        let facets = scene_of_shape(&Shape::new(Part::new(triangle())), &Exec::default()).unwrap().0;
         assert_eq!(facets.surfaces[0].normals, Some(vec![DVec3::Z; 3]));
         let mut own = triangle();
         own.insert_attribute(Domain::Vertex, Column::normals(NORMAL, &[DVec3::X, DVec3::Y, DVec3::Z])).unwrap();
-        let scene = scene_of_shape(&Shape::new(Part::new(own))).unwrap();
+        let scene = scene_of_shape(&Shape::new(Part::new(own)), &Exec::default()).unwrap().0;
         assert_eq!(scene.surfaces[0].normals, Some(vec![DVec3::X, DVec3::Y, DVec3::Z]));
     }
 
     #[test]
+    fn instances_take_from_the_budget() {
+        let shape = Shape { parts: vec![Part::new(triangle()); 100], ..Shape::default() };
+        let exec = Exec::default().with_memory(1 << 10);
+        assert_eq!(scene_of_shape(&shape, &exec).unwrap_err().category(), shapeloom_core::Category::OverLimit);
+    }
+
+    #[test]
     fn other_kinds_are_refused() {
-        let error = scene_of_shape(&Shape::new(Part::new(PolyMesh::default()))).unwrap_err();
+        let error = scene_of_shape(&Shape::new(Part::new(PolyMesh::default())), &Exec::default()).unwrap_err();
         assert_eq!(error.to_string(), "found a poly-mesh, expected a tri-mesh");
     }
 }

@@ -1,6 +1,6 @@
 //! Shapes and their parts.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use shapeloom_core::{Aabb, Affine};
@@ -69,7 +69,12 @@ impl Shape {
 
     /// A box that holds all parts; exact up to rounding where placements do not turn.
     pub fn bounds(&self) -> Aabb {
-        self.parts.iter().map(Part::bounds).fold(Aabb::EMPTY, Aabb::union)
+        let mut known = HashMap::new();
+        let placed = self.parts.iter().map(|part| {
+            let own = known.entry(Arc::as_ptr(&part.geometry)).or_insert_with(|| part.geometry.bounds());
+            own.transformed(&part.placement)
+        });
+        placed.fold(Aabb::EMPTY, Aabb::union)
     }
 
     /// The kinds of the parts, each once, in the order of [`Kind`].

@@ -3,17 +3,18 @@
 use std::path::Path;
 
 use serde_json::json;
-use shapeloom_convert::{Conversion, Job, Wish, convert_shape};
-use shapeloom_core::{Category, Deviation, Report};
+use shapeloom_convert::{Conversion, Job, Wish, convert_shape, plan};
+use shapeloom_core::{Category, Deviation, Report, Tolerance, ToleranceError};
 use shapeloom_io::{Format, WriteContext, format_by_id, format_for_output, write};
 use shapeloom_shape::{Kind, Shape};
 
 use super::draw;
+use super::render::check_png;
 use crate::account;
 use crate::arguments::{ConvertArguments, WayArguments};
 use crate::failure::Failure;
 use crate::input::{self, is_stream};
-use crate::output::{Output, check_apart, check_free, stage_or_stream};
+use crate::output::{check_apart, check_free, commit, stage};
 use crate::session::Session;
 
 pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Result<(), Failure> {
@@ -29,13 +30,13 @@ pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Re
     };
     delivery.check(session)?;
     let wish = wish(&arguments.way, format.kinds)?;
-    let tolerance = tolerance.resolve(input.read.shape.bounds().diagonal())?;
+    let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
     let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
     let source = json!({
         "name": input.name, "format": input.format.id, "bytes": input.bytes,
         "findings": account::findings(&input.read.findings), "losses": account::losses(&input.read.losses),
     });
-    delivery.deliver(source, &input.read.shape, &job, session)
+    delivery.deliver(source, &input.read.shape, Deviation::Exact, &job, session)
 }
 
 /// The format to write: the one named, else by extension.
@@ -71,6 +72,17 @@ pub(crate) fn wish(way: &WayArguments, kinds: &[Kind]) -> Result<Wish, Failure> 
     Ok(Wish { targets: kinds.to_vec(), method: way.method.clone(), via })
 }
 
+/// The tolerance in the units of a shape. A shape without size has none in per cent, and needs none where every step is
+/// exact or says its own error: it is 0 then.
+pub(crate) fn absolute(tolerance: Tolerance, shape: &Shape, wish: &Wish) -> Result<f64, Failure> {
+    let needed =
+        shape.parts.iter().any(|part| plan(part.geometry.kind(), wish).is_ok_and(|plan| plan.lossy_steps() > 0));
+    match tolerance.resolve(shape.bounds().diagonal()) {
+        Err(ToleranceError::NoScale { .. }) if !needed => Ok(0.0),
+        resolved => Ok(resolved?),
+    }
+}
+
 /// Where a result goes, in which forms.
 pub(crate) struct Delivery<'a> {
     pub(crate) output: &'a Path,
@@ -85,6 +97,7 @@ impl Delivery<'_> {
     pub(crate) fn check(&self, session: &Session<'_>) -> Result<(), Failure> {
         let paths: Vec<&Path> = [Some(self.output), self.picture, self.report].into_iter().flatten().collect();
         check_apart(&paths)?;
+        self.picture.map_or(Ok(()), check_png)?;
         if session.globals.json && paths.iter().any(|path| is_stream(path)) {
             let message = "--json and an output of - both want standard output: expected one of them";
             return Err(Failure::usage("E-usage-outputs", message));
@@ -92,11 +105,12 @@ impl Delivery<'_> {
         paths.into_iter().try_for_each(|path| check_free(path, self.force))
     }
 
-    /// Converts a shape and writes everything, or nothing.
+    /// Converts a shape, itself `made` with some deviation, and writes everything, or nothing.
     pub(crate) fn deliver(
         &self,
         source: serde_json::Value,
         shape: &Shape,
+        made: Deviation,
         job: &Job,
         session: &mut Session<'_>,
     ) -> Result<(), Failure> {
@@ -108,17 +122,18 @@ impl Delivery<'_> {
         let mut written = None;
         let exec = session.exec();
         session.stage("writing");
+        let before = made.then(conversion.deviation);
         let strict = session.globals.strict;
-        let main = stage_or_stream(self.output, self.force, session, |out| {
+        let mut staged = vec![stage(self.output, self.force, |out| {
             let report = write(&conversion.shape, self.format, &WriteContext { exec }, out)?;
             if strict {
-                check_strict(conversion.deviation.then(report.deviation), job.tolerance)?;
+                check_strict(before.then(report.deviation), job.tolerance)?;
             }
             written = Some(report);
             Ok(())
-        })?;
+        })?];
         let written = written.unwrap_or_else(|| Report::exact("write", ""));
-        let deviation = conversion.deviation.then(written.deviation);
+        let deviation = before.then(written.deviation);
         let account = json!({
             "schema": "shapeloom.convert/1",
             "input": source,
@@ -129,23 +144,20 @@ impl Delivery<'_> {
             "deviation": account::deviation(deviation),
             "within_tolerance": deviation.is_within(job.tolerance),
         });
-        let mut staged: Vec<Output> = main.into_iter().collect();
         if let Some(path) = self.picture {
             session.stage("drawing");
             let image = draw::picture_of(&conversion.shape, job.tolerance, &draw::Look::of_session(session), session)?;
             let bytes = image.to_png()?;
-            let picture = stage_or_stream(path, self.force, session, |out| {
+            staged.push(stage(path, self.force, |out| {
                 out.write_all(&bytes).map_err(|error| Failure::write(path, &error))
-            })?;
-            staged.extend(picture);
+            })?);
         }
         if let Some(path) = self.report {
-            let report = stage_or_stream(path, self.force, session, |out| {
+            staged.push(stage(path, self.force, |out| {
                 writeln!(out, "{account:#}").map_err(|error| Failure::write(path, &error))
-            })?;
-            staged.extend(report);
+            })?);
         }
-        staged.into_iter().try_for_each(Output::commit)?;
+        commit(staged, session)?;
         self.tell(&conversion, &written, deviation, session);
         if session.globals.json {
             session.print_json(&account)?;
@@ -180,7 +192,7 @@ impl Delivery<'_> {
 }
 
 /// Under `--strict` a result that is not proven to be within the tolerance is none.
-fn check_strict(deviation: Deviation, tolerance: f64) -> Result<(), Failure> {
+pub(crate) fn check_strict(deviation: Deviation, tolerance: f64) -> Result<(), Failure> {
     if deviation.is_within(tolerance) {
         return Ok(());
     }
@@ -197,7 +209,7 @@ fn explain(shape: &Shape, job: &Job, session: &mut Session<'_>) -> Result<(), Fa
     let targets: Vec<&str> = job.wish.targets.iter().map(|kind| kind.name()).collect();
     for (index, part) in shape.parts.iter().enumerate() {
         let kind = part.geometry.kind();
-        let plan = shapeloom_convert::plan(kind, &job.wish)?;
+        let plan = plan(kind, &job.wish)?;
         let steps: Vec<&str> = plan.steps.iter().map(|step| step.name).collect();
         let way = if steps.is_empty() { "as it is".to_owned() } else { format!("by {}", steps.join(", then ")) };
         session.say(format_args!(

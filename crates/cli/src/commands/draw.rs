@@ -1,7 +1,7 @@
 //! Drawing shapes of any kind: what is not triangles is converted for the picture.
 
 use shapeloom_convert::{Job, Wish, convert_shape, plan};
-use shapeloom_core::{Camera, Category, Options};
+use shapeloom_core::{Camera, Category, Deviation, Options, Reservation};
 use shapeloom_render::{Image, Picture, Scene, camera_from, scene_of_shape, sensible_camera, turntable};
 use shapeloom_shape::{Kind, Shape, UpAxis};
 
@@ -30,6 +30,9 @@ impl Look {
 pub(crate) struct Stage {
     scene: Scene,
     up: UpAxis,
+    /// How far the triangles that are drawn may be from the shape.
+    pub(crate) deviation: Deviation,
+    _memory: Reservation,
 }
 
 impl Stage {
@@ -53,8 +56,11 @@ impl Stage {
                 advice: None,
             });
         }
-        let triangles = convert_shape(&drawable, job, &session.exec())?.shape;
-        Ok(Self { scene: scene_of_shape(&triangles)?, up: shape.up.unwrap_or(UpAxis::Z) })
+        let exec = session.exec();
+        let conversion = convert_shape(&drawable, job, &exec)?;
+        let (scene, memory) = scene_of_shape(&conversion.shape, &exec)?;
+        let up = shape.up.unwrap_or(UpAxis::Z);
+        Ok(Self { scene, up, deviation: conversion.deviation, _memory: memory })
     }
 
     /// Draws one picture.

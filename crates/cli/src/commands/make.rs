@@ -33,9 +33,10 @@ pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Resul
     let diagonal = made.value.bounds().diagonal();
     let shape = Shape { up: Some(UpAxis::Z), ..Shape::new(Part::new(made.value).named(arguments.shape.as_str())) };
     let source = json!({ "shape": arguments.shape, "report": account::report(&made.report) });
+    // For judging the facets, which are fixed by the shape's own options.
     let tolerance = Tolerance::OfDiagonal(1e-3).resolve(diagonal)?;
     let job = Job { wish: Wish::to(format.kinds), tolerance, settings: Vec::new() };
-    delivery.deliver(source, &shape, &job, session)
+    delivery.deliver(source, &shape, made.report.deviation, &job, session)
 }
 
 type Settings<'a> = &'a [(String, String)];

@@ -4,21 +4,22 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use shapeloom_convert::Job;
-use shapeloom_core::{Camera, Options};
+use shapeloom_core::{Camera, Category, Options};
 use shapeloom_render::Picture;
 use shapeloom_shape::Kind;
 
-use super::convert::wish;
+use super::convert::{absolute, check_strict, wish};
 use super::draw::{Look, Stage};
 use crate::arguments::RenderArguments;
 use crate::failure::Failure;
 use crate::input::{self, is_stream};
-use crate::output::{Output, check_free, stage_or_stream};
+use crate::output::{check_free, commit, stage};
 use crate::session::Session;
 
 pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Result<(), Failure> {
     let tolerance = arguments.way.tolerance()?;
     let look = look(arguments, session)?;
+    check_png(&arguments.output)?;
     let paths = match arguments.turntable {
         Some(_) if is_stream(&arguments.output) => {
             let message = "--turntable draws many pictures: expected a file name, found standard output";
@@ -33,24 +34,27 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     }
     paths.iter().try_for_each(|path| check_free(path, arguments.force))?;
     let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
-    let tolerance = tolerance.resolve(input.read.shape.bounds().diagonal())?;
-    let job =
-        Job { wish: wish(&arguments.way, &[Kind::TriMesh])?, tolerance, settings: arguments.way.settings.clone() };
+    let wish = wish(&arguments.way, &[Kind::TriMesh])?;
+    let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
+    let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
     session.stage("converting");
-    let stage = Stage::new(&input.read.shape, &job, session)?;
+    let scene = Stage::new(&input.read.shape, &job, session)?;
+    if session.globals.strict {
+        check_strict(scene.deviation, tolerance)?;
+    }
     let cameras: Vec<Camera> = match arguments.turntable {
-        Some(frames) => stage.turntable(&look, frames)?,
-        None => vec![stage.camera(&look)?],
+        Some(frames) => scene.turntable(&look, frames)?,
+        None => vec![scene.camera(&look)?],
     };
     session.stage("drawing");
     let mut staged = Vec::new();
     for (path, camera) in paths.iter().zip(&cameras) {
-        let bytes = stage.draw(&look, camera, session)?.to_png()?;
-        staged.extend(stage_or_stream(path, arguments.force, session, |out| {
+        let bytes = scene.draw(&look, camera, session)?.to_png()?;
+        staged.push(stage(path, arguments.force, |out| {
             out.write_all(&bytes).map_err(|error| Failure::write(path, &error))
         })?);
     }
-    staged.into_iter().try_for_each(Output::commit)?;
+    commit(staged, session)?;
     let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
     session.say(format_args!("wrote {}", names.join(", ")));
     if session.globals.json {
@@ -63,6 +67,19 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
         session.print_json(&object)?;
     }
     Ok(())
+}
+
+/// Refuses a picture whose name promises another format.
+pub(crate) fn check_png(path: &Path) -> Result<(), Failure> {
+    match path.extension() {
+        Some(extension) if !extension.eq_ignore_ascii_case("png") => Err(Failure::Own {
+            code: "E-picture-format",
+            category: Category::Unsupported,
+            message: format!("{}: found a picture with another extension, expected png", path.display()),
+            advice: None,
+        }),
+        _ => Ok(()),
+    }
 }
 
 fn look(arguments: &RenderArguments, session: &Session<'_>) -> Result<Look, Failure> {
@@ -79,7 +96,8 @@ fn look(arguments: &RenderArguments, session: &Session<'_>) -> Result<Look, Fail
 
 /// `out.png` as `out-007.png`.
 fn numbered(path: &Path, frame: u32) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or("png".into(), |extension| extension.to_string_lossy());
-    path.with_file_name(format!("{stem}-{frame:03}.{extension}"))
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push(format!("-{frame:03}."));
+    name.push(path.extension().unwrap_or("png".as_ref()));
+    path.with_file_name(name)
 }

@@ -23,9 +23,14 @@ pub trait VectorSpace:
     /// The coordinates, padded with zeros to three.
     fn to_space(self) -> DVec3;
 
-    /// The length.
+    /// The length, safe against overflow and underflow of squares.
     fn length(self) -> f64 {
-        self.to_space().length()
+        let vector = self.to_space();
+        let largest = vector.abs().max_element();
+        if largest == 0.0 || !largest.is_finite() || (1e-140..1e140).contains(&largest) {
+            return vector.length();
+        }
+        (vector / largest).length() * largest
     }
 }
 

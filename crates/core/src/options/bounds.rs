@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::Words;
+
 /// The numbers that an option accepts. NaN is in no bounds; infinity is in none but [`Bounds::ANY`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
@@ -38,13 +40,13 @@ impl fmt::Display for Bounds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lower = match (self.above, self.min) {
             (_, f64::NEG_INFINITY | f64::MIN) => String::new(),
-            (true, min) => format!("above {min}"),
-            (false, min) => format!("from {min}"),
+            (true, min) => format!("above {}", Words(min)),
+            (false, min) => format!("from {}", Words(min)),
         };
         let upper = match self.max {
             f64::INFINITY => String::new(),
             f64::MAX => "finite".to_owned(),
-            max => format!("to {max}"),
+            max => format!("to {}", Words(max)),
         };
         match (lower.is_empty(), upper.is_empty()) {
             (true, true) => f.write_str("any number"),

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Bounds, OptionKind};
-use crate::{Category, Diagnostic};
+use crate::{Category, Diagnostic, Words};
 
 /// Why an option cannot be used.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,7 @@ impl fmt::Display for OptionError {
                 write!(f, "{algorithm}: option {name}: found \"{found}\", expected {kind}")
             }
             Self::OutOfBounds { algorithm, name, found, bounds } => {
-                write!(f, "{algorithm}: option {name}: found {found}, expected a number {bounds}")
+                write!(f, "{algorithm}: option {name}: found {}, expected a number {bounds}", Words(*found))
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Positions in single precision about a local origin.
 
 use shapeloom_core::Aabb;
+use shapeloom_core::VectorSpace;
 use shapeloom_core::glam::DVec3;
 
 /// Points in single precision: point `i` is `origin + positions[i]` within `rounding`.
@@ -54,7 +55,8 @@ fn about(points: &[DVec3], origin: DVec3) -> Result<SinglePrecision, usize> {
             return Err(index);
         }
         positions.extend_from_slice(&local.to_array());
-        let error = (local.as_dvec3() + origin - point).length();
+        // Not by squares, which vanish for tiny shapes.
+        let error = VectorSpace::length(local.as_dvec3() + origin - point);
         // The length itself is rounded.
         rounding = rounding.max(if error > 0.0 { error * (1.0 + 4.0 * f64::EPSILON) } else { 0.0 });
     }

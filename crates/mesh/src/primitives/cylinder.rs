@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Bounds, ConvertError, Converted, Exec, Options, options};
 
-use super::{BYTES_A_VERTEX, FaceList, around, finish, proven};
+use super::{BYTES_A_VERTEX, FaceList, LENGTH, around, finish, proven};
 use crate::PolyMesh;
 
 options! {
@@ -12,9 +12,9 @@ options! {
         required {}
         optional {
             /// Its radius, in model units.
-            radius: f64 [Bounds::POSITIVE] = 1.0,
+            radius: f64 [LENGTH] = 1.0,
             /// Its height, in model units.
-            height: f64 [Bounds::POSITIVE] = 2.0,
+            height: f64 [LENGTH] = 2.0,
             /// How many sides.
             segments: u32 [Bounds::closed(3.0, 1048576.0)] = 64,
         }

@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Bounds, ConvertError, Converted, Deviation, Exec, Options, options};
 
-use super::{BYTES_A_VERTEX, FaceList, finish};
+use super::{BYTES_A_VERTEX, FaceList, LENGTH, finish};
 use crate::{Column, Domain, MeshError, PolyMesh, TEXCOORD};
 
 options! {
@@ -12,9 +12,9 @@ options! {
         required {}
         optional {
             /// Its width along x, in model units.
-            width: f64 [Bounds::POSITIVE] = 1.0,
+            width: f64 [LENGTH] = 1.0,
             /// Its depth along y, in model units.
-            depth: f64 [Bounds::POSITIVE] = 1.0,
+            depth: f64 [LENGTH] = 1.0,
             /// How many cells along x.
             columns: u32 [Bounds::closed(1.0, 32768.0)] = 10,
             /// How many cells along y.

@@ -17,7 +17,7 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{ConvertError, Converted, Deviation, Exec, Report};
+use shapeloom_core::{Bounds, ConvertError, Converted, Deviation, Exec, Report};
 
 use crate::{Column, Domain, MeshError, NORMAL, PolyMesh};
 
@@ -32,6 +32,9 @@ fn around(index: u32, count: u32) -> DVec3 {
         }
     }
 }
+
+/// Lengths that shapes are made with: products of three of them are still numbers.
+const LENGTH: Bounds = Bounds { min: 1e-100, above: false, max: 1e100 };
 
 /// Bytes that a quad mesh with normals takes for each vertex while it is built.
 const BYTES_A_VERTEX: usize = 160;

@@ -1,9 +1,9 @@
 //! The five platonic solids.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Bounds, ConvertError, Converted, Deviation, Exec, Options, choice, options};
+use shapeloom_core::{ConvertError, Converted, Deviation, Exec, Options, choice, options};
 
-use super::{FaceList, finish};
+use super::{FaceList, LENGTH, finish};
 use crate::PolyMesh;
 
 choice! {
@@ -31,7 +31,7 @@ options! {
         }
         optional {
             /// The length of its edges, in model units.
-            edge: f64 [Bounds::POSITIVE] = 1.0,
+            edge: f64 [LENGTH] = 1.0,
         }
     }
 }
@@ -59,9 +59,10 @@ impl Platonic {
                 (corners, 2.0 / PHI)
             }
         };
-        let positions: Vec<DVec3> =
-            corners.into_iter().map(|corner| DVec3::from(corner) * (self.edge / edge)).collect();
-        let faces = convex_faces(&positions, self.edge);
+        // Faces are found at a size where distances neither vanish nor overflow.
+        let corners: Vec<DVec3> = corners.into_iter().map(DVec3::from).collect();
+        let faces = convex_faces(&corners, edge);
+        let positions = corners.into_iter().map(|corner| corner * (self.edge / edge)).collect();
         finish(self.solid_name(), positions, faces.into_parts(), None, Deviation::Exact, exec)
     }
 

@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Bounds, ConvertError, Converted, Exec, Options, options};
 
-use super::{BYTES_A_VERTEX, FaceList, around, finish, proven};
+use super::{BYTES_A_VERTEX, FaceList, LENGTH, around, finish, proven};
 use crate::PolyMesh;
 
 options! {
@@ -14,9 +14,9 @@ options! {
         required {}
         optional {
             /// The radius of the circle in the middle of the tube, in model units.
-            major_radius: f64 [Bounds::POSITIVE] = 1.0,
+            major_radius: f64 [LENGTH] = 1.0,
             /// The radius of the tube, in model units.
-            minor_radius: f64 [Bounds::POSITIVE] = 0.4,
+            minor_radius: f64 [LENGTH] = 0.4,
             /// How many facets around the axis.
             segments: u32 [Bounds::closed(3.0, 32768.0)] = 96,
             /// How many facets around the tube.

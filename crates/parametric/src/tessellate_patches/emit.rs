@@ -9,7 +9,7 @@ use shapeloom_mesh::{Column, Domain, MeshError, NORMAL, PATCH, TEXCOORD, TriMesh
 use super::TessellatePatches;
 use super::edges::{EdgeTable, bits};
 use super::layout::{Layout, Node, Piece};
-use super::plan::Demand;
+use super::plan::{Demand, POLL_WORK};
 use crate::bezier_patch::tangent_normal;
 use crate::de_casteljau::evaluate_with_derivative;
 use crate::{BezierPatch, BezierSurface, PatchSide, TessellationError};
@@ -177,7 +177,10 @@ struct Corner {
 impl PatchJob<'_> {
     fn run(&self, options: &TessellatePatches, exec: &Exec) -> Result<PatchMesh, ConvertError> {
         let (inner, inner_normals) = self.inner(options.normals, exec)?;
-        let side_normals = PatchSide::ALL.map(|side| self.side_normals(side, options.normals));
+        let mut side_normals = [const { Vec::new() }; 4];
+        for side in PatchSide::ALL {
+            side_normals[side as usize] = self.side_normals(side, options.normals, exec)?;
+        }
         let mut mesh = PatchMesh { inner, ..PatchMesh::default() };
         let mut made = 0u32;
         self.layout.pieces(|piece| {
@@ -207,11 +210,17 @@ impl PatchJob<'_> {
             evaluate_with_derivative(&mut scratch, u)
         };
         let size = self.patch.hull_bounds().diagonal();
+        let mut work = 0;
         for j in 1..rows {
             exec.check()?;
             let v = f64::from(j) / f64::from(rows);
             let [row, slopes] = self.patch.row_with_derivative(v);
             for i in 1..columns {
+                work += (row.len() + 1) * (row.len() + 1);
+                if work > POLL_WORK {
+                    exec.check()?;
+                    work = 0;
+                }
                 let u = f64::from(i) / f64::from(columns);
                 let [point, du] = evaluate(&row, u);
                 points.push(point);
@@ -225,12 +234,16 @@ impl PatchJob<'_> {
     }
 
     /// The normals at the samples of a side, if wanted.
-    fn side_normals(&self, side: PatchSide, normals: bool) -> Vec<Option<DVec3>> {
-        let normal = |k: u32| {
-            let [u, v] = self.layout.parameters(Node::Side(side, k));
-            self.patch.normal(u, v)
-        };
-        if normals { (0..=self.layout.segments(side)).map(normal).collect() } else { Vec::new() }
+    fn side_normals(&self, side: PatchSide, wanted: bool, exec: &Exec) -> Result<Vec<Option<DVec3>>, ConvertError> {
+        let mut normals = Vec::new();
+        if wanted {
+            for k in 0..=self.layout.segments(side) {
+                exec.check()?;
+                let [u, v] = self.layout.parameters(Node::Side(side, k));
+                normals.push(self.patch.normal(u, v));
+            }
+        }
+        Ok(normals)
     }
 
     /// Cuts a piece into triangles, a cell along its shorter diagonal.

@@ -12,7 +12,7 @@ use shapeloom_core::{
 use shapeloom_mesh::TriMesh;
 
 use crate::tessellate_curve::{chord_share, rounding};
-use crate::{BezierSurface, TessellationError};
+use crate::{BezierPatch, BezierSurface, TessellationError};
 use edges::EdgeTable;
 use plan::{Demand, MAX_ROUNDS, PatchPlan, examine, layout_for};
 
@@ -69,6 +69,13 @@ impl Convert<BezierSurface> for TessellatePatches {
         let rounding = roundings.iter().copied().fold(0.0, f64::max);
         let share = chord_share(self.chord_tolerance, rounding)?;
         exec.check()?;
+        let overflows = |patch: &BezierPatch| {
+            let bounds = patch.second_derivative_bounds();
+            !(bounds.uu.is_finite() && bounds.uv.is_finite() && bounds.vv.is_finite())
+        };
+        if let Some(index) = source.patches.iter().position(overflows) {
+            return Err(TessellationError::TooLarge { kind: "patch", index }.into());
+        }
         let _plan_memory = exec.reserve_elements(source.control_point_count() as u64, 4 * 3 * 8)?;
 
         let mut table = EdgeTable::new(source);

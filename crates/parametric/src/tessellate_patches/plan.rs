@@ -21,24 +21,24 @@ pub(super) struct Demand {
 /// A grid with close to the fewest cells whose cells are all within `share` by the bound over the whole patch: none if one
 /// direction alone needs more than `allowed` segments.
 pub(super) fn grid_for(bounds: &SecondDerivativeBounds, share: f64, allowed: u32) -> Result<[u32; 2], f64> {
-    let budget = 8.0 * share;
-    let (least_u, least_v) = ((bounds.uu / budget).sqrt(), (bounds.vv / budget).sqrt());
-    // Rows that suffice for steps of 1/columns: the positive root of vv·h² + 2·uv·w·h + uu·w² = budget, inverted.
+    // In units of what is allowed, so that products neither vanish nor overflow at any size of the surface.
+    let [uu, uv, vv] = [bounds.uu, bounds.uv, bounds.vv].map(|bound| bound / share / 8.0);
+    let (least_u, least_v) = (uu.sqrt(), vv.sqrt());
+    // Rows that suffice for steps of 1/columns: the positive root of vv·h² + 2·uv·w·h + uu·w² = 1, inverted.
     let rows_for = |columns: f64| {
         let w = 1.0 / columns;
-        let left = budget - bounds.uu * w * w;
+        let left = 1.0 - uu * w * w;
         if left <= 0.0 {
             return f64::INFINITY;
         }
-        let mixed = bounds.uv * w;
+        let mixed = uv * w;
         // The conjugate form does not cancel; a flat direction gives 0 and one row.
-        ((mixed + (mixed * mixed + bounds.vv * left).sqrt()) / left).ceil().max(1.0)
+        ((mixed + (mixed * mixed + vv * left).sqrt()) / left).ceil().max(1.0)
     };
     // At the continuous optimum both directions share alike: uu·w² = vv·h². Where one is flat only the twist counts, and
     // a square grid is as good as any.
-    let optimum = |uu: f64, vv: f64| ((2.0 * uu + 2.0 * bounds.uv * (uu / vv).sqrt()) / budget).sqrt();
-    let twist = (2.0 * bounds.uv / budget).sqrt();
-    let guess = if bounds.uu > 0.0 && bounds.vv > 0.0 { optimum(bounds.uu, bounds.vv) } else { least_u.max(twist) };
+    let twist = (2.0 * uv).sqrt();
+    let guess = if uu > 0.0 && vv > 0.0 { (2.0 * uu + 2.0 * uv * (uu / vv).sqrt()).sqrt() } else { least_u.max(twist) };
     let most = least_u.max(least_v).max(guess).max(1.0);
     if most.is_nan() || most > f64::from(allowed) {
         return Err(most);
@@ -57,15 +57,20 @@ pub(super) fn grid_for(bounds: &SecondDerivativeBounds, share: f64, allowed: u32
     best.map(|(_, [columns, rows])| [columns as u32, rows as u32]).ok_or(most.max(f64::from(allowed) + 1.0))
 }
 
+/// About a millisecond of multiplications.
+pub(super) const POLL_WORK: usize = 1 << 20;
+
 /// Bounds every piece of a patch with the sides as they are sampled now.
 pub(super) fn examine(nets: &CurvatureNets, layout: Layout, share: f64, exec: &Exec) -> Result<Demand, Stop> {
     let mut demand = Demand { layout, certificate: 0.0, sides: layout.sides, finer: false };
     let mut scratch = Scratch::default();
-    let mut examined = 0u32;
+    let mut work = 0;
     layout.pieces(|piece| {
-        examined = examined.wrapping_add(1);
-        if examined.is_multiple_of(1024) {
+        // Polled by work and not by pieces: a piece of a patch of high degree takes milliseconds.
+        work += nets.work();
+        if work > POLL_WORK {
             exec.check()?;
+            work = 0;
         }
         let corners = piece.nodes().iter().map(|&node| layout.parameters(node));
         let span = |axis: usize| {

@@ -300,5 +300,45 @@ fn degenerate_surfaces_give_no_panic() {
     }
     let huge = (0..16).map(|k| DVec3::new(f64::from(k % 4), f64::from(k / 4), f64::from(k * k)) * 1e300).collect();
     let huge = BezierPatch::try_new(3, 3, huge).unwrap();
-    assert!(TessellatePatches::new(1e299).convert(&BezierSurface::new(vec![huge])).is_err());
+    assert!(TessellatePatches::new(1e299).convert(&BezierSurface::new(vec![huge])).is_ok());
+}
+
+/// Squares of lengths vanish below 1e-154 and overflow above 1e154: the bound must not go with them.
+#[test]
+fn the_bound_scales_with_the_surface_where_squares_do_not() {
+    let saddle = |scale: f64| {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE].map(|corner| corner * scale);
+        BezierSurface::new(vec![BezierPatch::try_new(1, 1, corners.to_vec()).unwrap()])
+    };
+    let unit = TessellatePatches::new(1e-3).convert(&saddle(1.0)).unwrap();
+    for scale in [1e-200, 1e-170, 1e-155, 1e155, 1e200, 1e290] {
+        let converted = TessellatePatches::new(1e-3 * scale).convert(&saddle(scale)).unwrap();
+        assert_eq!(converted.value.triangles().len(), unit.value.triangles().len(), "{scale}");
+        let ratio = converted.report.certificates[0] / (unit.report.certificates[0] * scale);
+        assert!((ratio - 1.0).abs() < 1e-9, "{scale}: {ratio}");
+    }
+    assert!(TessellatePatches::new(1e-311).convert(&saddle(1e-308)).is_err());
+    let corners = [-1.7e308, 1.7e308, 1.7e308, -1.7e308].map(DVec3::splat);
+    let opposite = BezierSurface::new(vec![BezierPatch::try_new(1, 1, corners.to_vec()).unwrap()]);
+    let error = TessellatePatches::new(1e307).convert(&opposite).unwrap_err();
+    assert_eq!(error.diagnostic().code(), "E-tessellation-overflow");
+}
+
+/// A piece of a patch of high degree takes milliseconds: polls must follow the work.
+#[test]
+fn patches_of_high_degree_poll_often() {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU64, Ordering};
+    let net = (0..41 * 41).map(|k| DVec3::new(f64::from(k % 41), f64::from(k / 41), f64::from(k * 7919 % 13)));
+    let surface = BezierSurface::new(vec![BezierPatch::try_new(40, 40, net.collect()).unwrap()]);
+    let polls = Arc::new(AtomicU64::new(0));
+    let counter = Arc::clone(&polls);
+    let exec = Exec::default().with_watch(move || {
+        counter.fetch_add(1, Ordering::Relaxed);
+        None
+    });
+    let converted = TessellatePatches::new(20.0).convert_with(&surface, &exec).unwrap();
+    // A piece is about 0.8 million multiplications, so a poll for every two pieces or so.
+    let triangles = converted.value.triangles().len() as u64;
+    assert!(8 * polls.load(Ordering::Relaxed) > triangles, "{polls:?} {triangles}");
 }
