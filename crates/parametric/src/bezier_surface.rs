@@ -47,7 +47,8 @@ impl BezierSurface {
     }
 
     /// The box of the surface itself: it holds the surface, and is larger by at most a billionth of its size (degrees
-    /// beyond about a hundred may leave more, as the work is bounded). Found by subdividing the patches whose hull still reaches beyond the points known to be on the surface.
+    /// beyond about a hundred may leave more, as the work is bounded). Found by subdividing the patches whose hull still
+    /// reaches beyond the points known to be on the surface.
     pub fn bounds(&self) -> Aabb {
         tight_bounds(self.patches.iter().map(|patch| (patch.degree_u() + 1, patch.control_points())))
     }

@@ -1,8 +1,8 @@
 //! Pictures of triangle meshes on the CPU, by ray casting: no display, no graphics driver, the same bytes for any number
 //! of threads.
 //!
-//! A [`Scene`] is triangles with colours, made by hand or from a shape by [`scene_of_shape`]; [`sensible_camera`] finds a view of it; [`Picture`] holds how it is drawn;
-//! the [`Image`] is encoded by [`Image::to_png`].
+//! A [`Scene`] is triangles with colours, made by hand or from a shape by [`scene_of_shape`]; [`sensible_camera`] finds a
+//! view of it; [`Picture`] holds how it is drawn; the [`Image`] is encoded by [`Image::to_png`].
 //!
 //! ```
 //! use shapeloom_core::Exec;
