@@ -13,6 +13,7 @@ mod harness;
 mod laws;
 mod malformed;
 mod oracles;
+mod properties;
 mod round_trips;
 mod same_bits;
 mod shapes;

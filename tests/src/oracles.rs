@@ -185,16 +185,16 @@ pub fn to_curved(geometry: &Geometry, p: DVec3) -> Option<f64> {
     }
 }
 
-/// The smallest distance found on the way down from the nearest start.
+/// The smallest distance found on the ways down from the nearest starts.
 fn descend(at: &impl Fn([f64; 2]) -> DVec3, p: DVec3, starts: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let (mut best, mut here) = (f64::INFINITY, [0.0; 2]);
-    for start in starts {
-        let distance = at(start).distance(p);
-        if distance < best {
-            (best, here) = (distance, start);
-        }
-    }
-    // Pattern search: to the best neighbour, or half the step where none is better. Slow, and fooled by nothing.
+    let mut starts: Vec<(f64, [f64; 2])> = starts.map(|start| (at(start).distance(p), start)).collect();
+    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // A surface that comes near more than once has several ways down.
+    starts.into_iter().take(6).map(|start| descend_from(at, p, start)).fold(f64::INFINITY, f64::min)
+}
+
+/// Pattern search: to the best neighbour, or half the step where none is better. Slow, and needs no slopes.
+fn descend_from(at: &impl Fn([f64; 2]) -> DVec3, p: DVec3, (mut best, mut here): (f64, [f64; 2])) -> f64 {
     let mut step = 0.125;
     while step > 1e-9 {
         let around = [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)];
@@ -202,10 +202,9 @@ fn descend(at: &impl Fn([f64; 2]) -> DVec3, p: DVec3, starts: impl Iterator<Item
             [(here[0] + f64::from(i) * step).clamp(0.0, 1.0), (here[1] + f64::from(j) * step).clamp(0.0, 1.0)]
         };
         let tried = around.map(moved).map(|there| (at(there).distance(p), there));
-        let (distance, there) =
-            tried.into_iter().fold((best, here), |least, new| if new.0 < least.0 { new } else { least });
-        if distance < best {
-            (best, here) = (distance, there);
+        let least = tried.into_iter().fold((best, here), |least, new| if new.0 < least.0 { new } else { least });
+        if least.0 < best {
+            (best, here) = least;
         } else {
             step /= 2.0;
         }
