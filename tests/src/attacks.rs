@@ -35,6 +35,8 @@ fn shapes_without_size_are_converted() {
         let outcome = run_on(&glb(&shape), &["convert", "-", "-", "--to", "obj"]);
         assert_eq!(outcome.code, 0, "{}", outcome.err);
     }
+    let nothing = run_on(b"0\n", &["convert", "-", "-", "--from", "bpt", "--to", "obj"]);
+    assert!(nothing.code == 0 && nothing.err.contains("W-bpt-empty"), "{}", nothing.err);
     let patch = b"1\n1 1\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n";
     let outcome = run_on(patch, &["convert", "-", "-", "--to", "obj"]);
     assert!(outcome.code == 2 && outcome.err.contains("E-tolerance-scale"), "{}", outcome.err);

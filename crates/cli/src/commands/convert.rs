@@ -77,8 +77,11 @@ pub(crate) fn wish(way: &WayArguments, kinds: &[Kind]) -> Result<Wish, Failure> 
 pub(crate) fn absolute(tolerance: Tolerance, shape: &Shape, wish: &Wish) -> Result<f64, Failure> {
     let needed =
         shape.parts.iter().any(|part| plan(part.geometry.kind(), wish).is_ok_and(|plan| plan.lossy_steps() > 0));
-    match tolerance.resolve(shape.bounds().diagonal()) {
+    let bounds = shape.bounds();
+    match tolerance.resolve(bounds.diagonal()) {
         Err(ToleranceError::NoScale { .. }) if !needed => Ok(0.0),
+        // Of nothing every tolerance is met.
+        Err(ToleranceError::NoScale { .. }) if bounds.is_empty() => Ok(f64::MIN_POSITIVE),
         resolved => Ok(resolved?),
     }
 }
