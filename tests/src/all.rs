@@ -3,7 +3,6 @@
 //! Documents that are made from tables are compared with what the tables say; with `SHAPELOOM_BLESS=1` in the
 //! environment they are written anew instead.
 
-mod attacks;
 mod bench;
 mod codes;
 mod command_line;
@@ -14,6 +13,7 @@ mod laws;
 mod malformed;
 mod oracles;
 mod properties;
+mod regressions;
 mod round_trips;
 mod same_bits;
 mod shapes;

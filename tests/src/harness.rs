@@ -4,8 +4,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use shapeloom::convert::{Converter, Effect, Request, registry};
-use shapeloom::core::{Category, Deviation, Exec, OptionKind, Stop};
-use shapeloom::mesh::{Domain, MeshAttributes};
+use shapeloom::core::glam::DVec3;
+use shapeloom::core::{Category, Deviation, Exec, OptionKind, Stop, Threads};
+use shapeloom::mesh::{Column, Domain, MeshAttributes, TriMesh};
 use shapeloom::shape::Geometry;
 
 use crate::oracles::{self, Pieces};
@@ -92,20 +93,76 @@ fn attributes(geometry: &Geometry) -> Option<&MeshAttributes> {
     }
 }
 
+/// Where the element with a tag lies in the source: a vertex's or corner's position, a face's corners.
+fn tagged_places(source: &Geometry, domain: Domain, tag: usize) -> Vec<DVec3> {
+    let (positions, faces): (&[DVec3], Vec<&[u32]>) = match source {
+        Geometry::TriMesh(mesh) => (mesh.positions(), mesh.triangles().iter().map(|face| face.as_slice()).collect()),
+        Geometry::PolyMesh(mesh) => (mesh.positions(), mesh.faces().collect()),
+        other => panic!("a {} has no tags", other.kind()),
+    };
+    let at = |vertex: &u32| positions[*vertex as usize];
+    match domain {
+        Domain::Vertex => vec![positions[tag]],
+        Domain::Wedge => vec![at(faces.concat().get(tag).expect("a corner"))],
+        Domain::Face => faces[tag].iter().map(at).collect(),
+    }
+}
+
+/// Checks that every tag in a column of the result lies where the tagged element of the source lies.
+fn check_tags(source: &Geometry, result: &TriMesh, before: Domain, after: Domain, column: &Column) -> bool {
+    let corners = result.triangles().as_flattened();
+    corners.iter().enumerate().all(|(wedge, &vertex)| {
+        let element = match after {
+            Domain::Vertex => vertex as usize,
+            Domain::Face => wedge / 3,
+            Domain::Wedge => wedge,
+        };
+        let tag = column.number(element, 0) as usize;
+        tagged_places(source, before, tag).contains(&result.positions()[vertex as usize])
+    })
+}
+
 #[test]
-fn tagged_attributes_arrive_or_are_listed_as_lost() {
+fn tagged_attributes_arrive_where_they_belong_or_are_listed_as_lost() {
+    let (mut checked, mut noticed) = (0, 0);
     for (converter, name, source) in cases() {
+        let Some(before) = attributes(&source) else { continue };
         let converted = converter.run(&source, &request(&source), &Exec::default()).expect("it ran before");
-        let (Some(before), Some(after)) = (attributes(&source), attributes(&converted.value)) else { continue };
+        let Geometry::TriMesh(result) = &converted.value else { panic!("all results with attributes are triangles") };
         for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
-            for column in before.of(domain) {
-                let arrived = [Domain::Vertex, Domain::Face, Domain::Wedge]
-                    .into_iter()
-                    .any(|domain| after.of(domain).get(column.name()).is_some());
-                let named = |loss: &shapeloom::core::Loss| loss.what.contains(column.name());
-                let lost = converted.report.losses.iter().any(named);
-                assert!(arrived || lost, "{} on {name}: {domain} attribute {}", converter.name, column.name());
-            }
+            let Some(tags) = before.of(domain).get("tag") else { continue };
+            // A vertex attribute may move to the corners; each kind of element has a tag of the same name, so the
+            // values tell which one arrived.
+            let arrived = [domain, Domain::Wedge].into_iter().find_map(|after| {
+                let column = result.attribute(after, "tag")?;
+                check_tags(&source, result, domain, after, column).then_some((after, column))
+            });
+            let Some((after, column)) = arrived else {
+                let what = format!("{domain} attribute \"{}\"", tags.name());
+                let lost = converted.report.losses.iter().any(|loss| loss.what == what);
+                assert!(lost, "{} on {name}: {what}", converter.name);
+                continue;
+            };
+            checked += 1;
+            // The check itself notices values that are shuffled.
+            let shuffled: Vec<u32> = (0..column.len() as u32).rev().collect();
+            let wrong = Column::labels("tag", shuffled.iter().map(|&i| column.number(i as usize, 0) as u32).collect());
+            noticed += usize::from(!check_tags(&source, result, domain, after, &wrong));
+        }
+    }
+    assert!(checked >= 6 && noticed == checked, "{checked} checked, {noticed} noticed");
+}
+
+/// The same result, report and all, on one, two and three threads and on none but the caller's.
+#[test]
+fn every_converter_gives_the_same_bits_on_any_number_of_threads() {
+    for (converter, name, source) in cases() {
+        let alone = Exec::default().with_threads(Threads::Sequential);
+        let wanted = converter.run(&source, &request(&source), &alone).expect("it ran before");
+        for threads in 1..=3 {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            let found = pool.install(|| converter.run(&source, &request(&source), &Exec::default()));
+            assert!(found.expect("it ran before") == wanted, "{} on {name}, {threads} threads", converter.name);
         }
     }
 }
@@ -124,8 +181,9 @@ fn cancelling_at_any_tick_gives_a_typed_error() {
         let _ = converter.run(&source, &request(&source), &counting).expect("it ran before");
         let total = polls.load(Ordering::Relaxed);
         assert!(total > 0 || source.bounds().is_empty(), "{} on {name} never polls", converter.name);
-        for _ in 0..8.min(total) {
-            let stop_at = dice.next() % total;
+        let some = (0..8).map(|_| dice.next() % total.max(1));
+        let ticks: Vec<u64> = if total <= 64 { (0..total).collect() } else { some.chain([0, total - 1]).collect() };
+        for stop_at in ticks {
             let seen = AtomicU64::new(0);
             let stopping = Exec::default()
                 .with_watch(move || (seen.fetch_add(1, Ordering::Relaxed) >= stop_at).then_some(Stop::Cancelled));
@@ -165,9 +223,17 @@ fn numeric_options_survive_absurd_values() {
             for value in ["NaN", "inf", "-inf", "0", "-1", "1e300", "1e-300"] {
                 let settings = [(spec.name.to_owned(), value.to_owned())];
                 let request = Request { settings: &settings, ..request(&source) };
-                if let Err(error) = converter.run(&source, &request, &Exec::default()) {
-                    let told = [Category::Usage, Category::OverLimit, Category::Failed].contains(&error.category());
-                    assert!(told, "{} on {name} with {}={value}: {error}", converter.name, spec.name);
+                match converter.run(&source, &request, &Exec::default()) {
+                    Ok(converted) => {
+                        let bounds = converted.value.bounds();
+                        let finite = bounds.is_empty() || (bounds.min.is_finite() && bounds.max.is_finite());
+                        let bound = converted.report.deviation.value().unwrap_or(0.0);
+                        assert!(finite && !bound.is_nan(), "{} on {name} with {}={value}", converter.name, spec.name);
+                    }
+                    Err(error) => {
+                        let told = [Category::Usage, Category::OverLimit, Category::Failed].contains(&error.category());
+                        assert!(told, "{} on {name} with {}={value}: {error}", converter.name, spec.name);
+                    }
                 }
             }
         }

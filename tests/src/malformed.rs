@@ -1,5 +1,7 @@
 //! Malformed input: typed errors that name the place, never a panic.
 
+use std::fs;
+
 use crate::support::{Dice, data, run, run_on, shared_data};
 
 fn teapot() -> Vec<u8> {
@@ -105,6 +107,35 @@ fn what_is_no_known_format_is_told() {
     }
     assert_eq!(run(&["info", "no-such-file.bpt"]).code, 3);
     assert_eq!(run(&["info", "."]).code, 3);
+}
+
+/// GLBs that are broken in their container, made from a sound one.
+#[test]
+fn broken_containers_are_refused_with_the_byte() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let glb = folder.path().join("cube.glb").display().to_string();
+    assert_eq!(run(&["make", "cube", &glb]).code, 0);
+    let sound = fs::read(&glb).expect("it was written");
+    let with = |at: usize, value: u32| {
+        let mut broken = sound.clone();
+        broken[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        broken
+    };
+    let total = sound.len() as u32;
+    for (what, broken, place) in [
+        ("magic", with(0, 0x1234_5678), "byte 0"),
+        ("version 1", with(4, 1), "byte 4"),
+        ("length beyond the file", with(8, total + 4), "byte 8"),
+        ("chunk of 4 GiB", with(12, u32::MAX), "byte 12"),
+        ("header alone", sound[..12].to_vec(), "byte"),
+        ("cut in its data", sound[..sound.len() - 7].to_vec(), "byte"),
+        ("first chunk no JSON", with(16, 0x0042_4942), "byte"),
+    ] {
+        let outcome = run_on(&broken, &["info", "-", "--from", "glb"]);
+        assert!([3, 4].contains(&outcome.code), "{what}: {} {}", outcome.code, outcome.err);
+        assert!(outcome.err.contains(place), "{what}: {}", outcome.err);
+        assert!(outcome.out.is_empty());
+    }
 }
 
 /// The collection of malformed files, where it is there: an error that names a place, never a panic.

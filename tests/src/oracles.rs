@@ -177,9 +177,17 @@ pub fn to_curved(geometry: &Geometry, p: DVec3) -> Option<f64> {
             let height = |i: u32, j: u32| field.sample(column + i, row + j).map(|sample| sample.z);
             let (s, t) = (x - f64::from(column), y - f64::from(row));
             let mix = |a: f64, b: f64, k: f64| a * (1.0 - k) + b * k;
-            let bottom = mix(height(0, 0)?, height(1, 0)?, s);
-            let top = mix(height(0, 1)?, height(1, 1)?, s);
-            Some((p.z - mix(bottom, top, t)).abs())
+            let corners = [height(0, 0), height(1, 0), height(0, 1), height(1, 1)];
+            let [Some(a), Some(b), Some(c), Some(d)] = corners else {
+                // Nothing may lie over a hole but the borders of the cells around it.
+                let on_border = s == 0.0 || t == 0.0 || s == 1.0 || t == 1.0;
+                return Some(if on_border { 0.0 } else { f64::INFINITY });
+            };
+            // Outside the grid the way goes on from its border.
+            let (ns, nt) = (s.clamp(0.0, 1.0), t.clamp(0.0, 1.0));
+            let up = (p.z - mix(mix(a, b, ns), mix(c, d, ns), nt)).abs();
+            let aside = ((s - ns) * field.spacing().x).hypot((t - nt) * field.spacing().y);
+            Some(up.hypot(aside))
         }
         _ => None,
     }

@@ -30,9 +30,10 @@ pub(crate) fn is_stream(path: &Path) -> bool {
 pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -> Result<Input, Failure> {
     session.stage("reading");
     let limits = session.limits();
+    let exec = session.exec();
     let (name, bytes) = if is_stream(path) {
         let name = "standard input".to_owned();
-        let bytes = slurp(&mut session.streams.input, &limits);
+        let bytes = slurp(&mut session.streams.input, &limits, &exec);
         let bytes = bytes.map_err(|error| Failure::from(error).about(name.as_ref()))?;
         (name, bytes)
     } else {
@@ -41,9 +42,8 @@ pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -
             let folder = std::io::Error::new(std::io::ErrorKind::IsADirectory, "it is a folder");
             return Err(Failure::read(path, &folder));
         }
-        (path.display().to_string(), slurp(file, &limits).map_err(|error| Failure::from(error).about(path))?)
+        (path.display().to_string(), slurp(file, &limits, &exec).map_err(|error| Failure::from(error).about(path))?)
     };
-    let exec = session.exec();
     let _memory = exec.reserve(bytes.len() as u64)?;
     let format = match from {
         Some(id) => format_by_id(id)?,
@@ -76,7 +76,7 @@ impl Siblings for Folder {
         };
         let file = File::open(self.0.join(name.as_str())).map_err(unreadable)?;
         let mut bytes = Vec::new();
-        file.take(max_bytes.saturating_add(1)).read_to_end(&mut bytes).map_err(unreadable)?;
-        if bytes.len() as u64 > max_bytes { Err(SiblingError::TooLong) } else { Ok(bytes) }
+        file.take(max_bytes).read_to_end(&mut bytes).map_err(unreadable)?;
+        Ok(bytes)
     }
 }

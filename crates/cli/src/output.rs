@@ -122,7 +122,13 @@ fn stage_file(
     };
     // The library's own texts name its temporary file, which means nothing to the user.
     let told = |error: io::Error| Failure::write(path, &io::Error::from(error.kind()));
-    fs::create_dir_all(folder).map_err(|error| Failure::write(path, &error))?;
+    fs::create_dir_all(folder).map_err(|error| match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            let told = format!("found a file at {}, expected a folder", folder.display());
+            Failure::write(path, &io::Error::new(ErrorKind::NotADirectory, told))
+        }
+        _ => Failure::write(path, &error),
+    })?;
     let mut builder = Builder::new();
     builder.prefix(".shapeloom-");
     #[cfg(unix)]

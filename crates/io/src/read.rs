@@ -72,18 +72,26 @@ pub fn read(input: &[u8], format: &Format, context: &ReadContext) -> Result<Read
     result.map_err(|error| error.in_input(&context.name))
 }
 
-/// All bytes of a stream, as long as they are within the limit.
+/// All bytes of a stream, as long as they are within the limit. Polls between pieces of a mebibyte; a stream that gives
+/// nothing cannot be interrupted from here.
 ///
 /// # Errors
-/// More bytes than [`Limits::max_bytes`], or the stream failed.
-pub fn slurp(reader: impl Read, limits: &Limits) -> Result<Vec<u8>, ReadError> {
+/// More bytes than [`Limits::max_bytes`], the stream failed, or the reason to stop.
+pub fn slurp(mut reader: impl Read, limits: &Limits, exec: &Exec) -> Result<Vec<u8>, ReadError> {
+    const PIECE: u64 = 1 << 20;
     let mut bytes = Vec::new();
-    let most = limits.max_bytes.saturating_add(1);
-    if let Err(error) = reader.take(most).read_to_end(&mut bytes) {
-        let place = Place::Byte(bytes.len() as u64);
-        return Err(Fault::new("E-read-io", place, error.to_string(), "a readable input").into());
+    loop {
+        exec.check()?;
+        match reader.by_ref().take(PIECE).read_to_end(&mut bytes) {
+            Ok(0) => return Ok(bytes),
+            Ok(_) if bytes.len() as u64 > limits.max_bytes => return Err(too_long(limits.max_bytes).into()),
+            Ok(_) => {}
+            Err(error) => {
+                let place = Place::Byte(bytes.len() as u64);
+                return Err(Fault::new("E-read-io", place, error.to_string(), "a readable input").into());
+            }
+        }
     }
-    if bytes.len() as u64 > limits.max_bytes { Err(too_long(limits.max_bytes).into()) } else { Ok(bytes) }
 }
 
 fn too_long(max_bytes: u64) -> Box<Fault> {
@@ -101,8 +109,8 @@ mod tests {
     #[test]
     fn slurping_stops_at_the_limit() {
         let limits = Limits { max_bytes: 4, ..Limits::default() };
-        assert_eq!(slurp(&b"abcd"[..], &limits).unwrap(), b"abcd");
-        let error = slurp(std::io::repeat(7), &limits).unwrap_err();
+        assert_eq!(slurp(&b"abcd"[..], &limits, &Exec::default()).unwrap(), b"abcd");
+        let error = slurp(std::io::repeat(7), &limits, &Exec::default()).unwrap_err();
         assert_eq!((error.code(), error.category()), ("E-read-size", Category::OverLimit));
         struct Broken;
         impl Read for Broken {
@@ -110,7 +118,7 @@ mod tests {
                 Err(std::io::Error::other("the disk is gone"))
             }
         }
-        let error = slurp(Broken, &limits).unwrap_err();
+        let error = slurp(Broken, &limits, &Exec::default()).unwrap_err();
         assert_eq!(error.to_string(), "input: byte 0: found the disk is gone, expected a readable input (E-read-io)");
     }
 

@@ -55,8 +55,6 @@ pub enum SiblingError {
     Forbidden,
     /// There is no such file.
     Missing,
-    /// It has more bytes than allowed.
-    TooLong,
     /// It could not be read.
     Io(String),
 }
@@ -66,7 +64,6 @@ impl fmt::Display for SiblingError {
         match self {
             Self::Forbidden => f.write_str("a name outside the folder of the input"),
             Self::Missing => f.write_str("no such file beside the input"),
-            Self::TooLong => f.write_str("a file with more bytes than allowed"),
             Self::Io(text) => f.write_str(text),
         }
     }
@@ -76,10 +73,10 @@ impl std::error::Error for SiblingError {}
 
 /// Opens the files that an input names: buffers, material libraries.
 pub trait Siblings: Send + Sync {
-    /// The whole file of that name, if it has at most `max_bytes`.
+    /// The file of that name, or if it is longer its first `max_bytes` bytes: no more is ever read or kept.
     ///
     /// # Errors
-    /// It is missing, too long or unreadable.
+    /// It is missing or unreadable.
     fn open(&self, name: &SiblingName, max_bytes: u64) -> Result<Vec<u8>, SiblingError>;
 }
 

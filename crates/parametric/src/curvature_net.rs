@@ -11,12 +11,24 @@ struct Net {
     width: usize,
     vectors: Vec<DVec3>,
     longest: f64,
+    /// A bound of how far forming and restricting the vectors rounds them.
+    rounding: f64,
 }
 
 impl Net {
-    fn new(width: usize, vectors: Vec<DVec3>) -> Self {
+    /// `size` is the largest coordinate of the control points, `factor` what differences are multiplied with.
+    fn new(width: usize, vectors: Vec<DVec3>, size: f64, factor: f64) -> Self {
         let longest = longest(&vectors);
-        Self { width, vectors, longest }
+        // A second difference of rounded points is off by a few units in the last place of the points. Restriction to
+        // a part is up to four triangular schemes, each of which adds a unit or so for each of its rounds.
+        let rounds = (width + vectors.len() / width.max(1)) as f64;
+        let rounding = 8.0 * f64::EPSILON * (factor * size + rounds * longest);
+        Self { width, vectors, longest, rounding }
+    }
+
+    /// Bounds the length over the whole domain.
+    fn whole(&self) -> f64 {
+        self.longest + self.rounding
     }
 
     /// Restricts the net in v, into `strip`.
@@ -39,7 +51,7 @@ impl Net {
     /// Bounds the length over a part of the domain, from the net as it was restricted in v.
     fn bound(&self, u: Interval, strip: &[DVec3], row: &mut Vec<DVec3>) -> f64 {
         if self.longest == 0.0 {
-            return 0.0;
+            return self.rounding;
         }
         let mut most = 0.0f64;
         for source in strip.chunks_exact(self.width) {
@@ -48,8 +60,7 @@ impl Net {
             de_casteljau::restrict(row, u.lo, u.hi);
             most = most.max(longest(row));
         }
-        // Restriction rounds each vector by a few units in the last place of the longest of the whole net.
-        most + 1e-13 * self.longest
+        most + self.rounding
     }
 }
 
@@ -81,9 +92,10 @@ pub(crate) struct CurvatureNets {
 impl CurvatureNets {
     pub(crate) fn new(patch: &BezierPatch) -> Self {
         let (m, n) = (patch.degree_u(), patch.degree_v());
+        let size = patch.control_points().iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
         let net = |along_u: usize, along_v: usize| {
             if m < along_u || n < along_v {
-                return Net::new(1, Vec::new());
+                return Net::new(1, Vec::new(), 0.0, 0.0);
             }
             let factor = falling(m, along_u) * falling(n, along_v);
             let mut vectors = Vec::with_capacity((m + 1 - along_u) * (n + 1 - along_v));
@@ -98,7 +110,7 @@ impl CurvatureNets {
                     vectors.push(difference * factor);
                 }
             }
-            Net::new(m + 1 - along_u, vectors)
+            Net::new(m + 1 - along_u, vectors, size, factor)
         };
         Self { uu: net(2, 0), uv: net(1, 1), vv: net(0, 2) }
     }
@@ -112,7 +124,7 @@ impl CurvatureNets {
 
     /// Bounds over the whole patch.
     pub(crate) fn whole(&self) -> SecondDerivativeBounds {
-        SecondDerivativeBounds { uu: self.uu.longest, uv: self.uv.longest, vv: self.vv.longest }
+        SecondDerivativeBounds { uu: self.uu.whole(), uv: self.uv.whole(), vv: self.vv.whole() }
     }
 
     /// Bounds over a part of the patch.

@@ -122,7 +122,11 @@ fn certificate<P: VectorSpace>(curve: &BezierCurve<P>, count: u32, exec: &Exec) 
         let part = second.segment(f64::from(k) * step, (f64::from(k + 1) * step).min(1.0));
         most = most.max(longest(&part));
     }
-    Ok((most + 1e-13 * whole) * step * step / 8.0)
+    // Forming the differences and restricting them rounds, as for patches.
+    let degree = curve.degree() as f64;
+    let size = curve.control_points().iter().map(|point| point.to_space().abs().max_element()).fold(0.0, f64::max);
+    let slack = 8.0 * f64::EPSILON * (degree * degree * size + (degree + 1.0) * whole);
+    Ok((most + slack) * step * step / 8.0)
 }
 
 fn longest<P: VectorSpace>(curve: &BezierCurve<P>) -> f64 {

@@ -78,7 +78,7 @@ options! {
 
 /// Rows that are in memory at a time.
 const BAND: usize = 256;
-/// Pixels between two polls: about a millisecond.
+/// Pixels between two polls: about a millisecond at the default number of rays, up to a second at the largest.
 const CHUNK: usize = 128;
 impl Picture {
     /// Draws the scene as the camera sees it. `up` says where the ground lies and where light comes from.

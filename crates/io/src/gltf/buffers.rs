@@ -64,8 +64,9 @@ fn from_uri(uri: &At<'_>, length: u64, memory: &mut Memory<'_>, context: &ReadCo
     };
     let most = length.min(context.limits.max_bytes);
     memory.take(usize::try_from(most).unwrap_or(usize::MAX), 1)?;
-    // Files are rounded up to blocks, so a few bytes more than the buffer needs are no error.
-    let opened = siblings.open(&name, context.limits.max_bytes);
+    // A file that is longer than the buffer is no error, but what the buffer does not declare is not read.
+    context.exec.check()?;
+    let opened = siblings.open(&name, most);
     Ok(opened.map_err(|error| uri.fault("E-sibling-missing", format!("{}: {error}", found()), "a readable file"))?)
 }
 

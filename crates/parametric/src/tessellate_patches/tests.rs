@@ -119,6 +119,9 @@ fn the_teapot_meets_its_certificate_and_that_its_tolerance() {
         }
         let whole = bound / measured.iter().copied().fold(0.0, f64::max);
         ratios.sort_by(f64::total_cmp);
+        // Coarse tessellations of the knob and the bottom, where the parameter accelerates most, are just above 4.
+        let above = ratios.iter().filter(|&&ratio| ratio > 4.0).count();
+        assert!(above <= if tolerance > 0.01 { 4 } else { 0 }, "{tolerance}: {ratios:?}");
         let median = ratios[ratios.len() / 2];
         assert!(whole <= 4.0 && median <= 4.0, "{whole} {median}");
     }

@@ -1,4 +1,4 @@
-//! What attackers found: each input stays here as a test.
+//! Inputs that once went wrong: each stays here as a test.
 
 use std::fs;
 
@@ -25,6 +25,39 @@ fn instances_do_not_outgrow_the_budget() {
     let shape = Shape { parts: vec![part; 500], ..Shape::default() };
     let outcome = run_on(&glb(&shape), &["render", "-", "-", "--size", "20x20", "--max-memory", "100M"]);
     assert!(outcome.code == 7 && outcome.err.contains("E-memory-budget"), "{} {}", outcome.code, outcome.err);
+}
+
+/// Of a buffer's file no more is read than the buffer declares, however often it is named.
+#[test]
+fn files_that_a_gltf_names_are_read_as_far_as_declared() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("large.bin"), vec![0u8; 8 << 20]).expect("a file");
+    let buffer = r#"{"byteLength":4,"uri":"large.bin"}"#;
+    let text = format!(r#"{{"asset":{{"version":"2.0"}},"buffers":[{}]}}"#, vec![buffer; 20].join(","));
+    let name = folder.path().join("m.gltf");
+    fs::write(&name, text).expect("a file");
+    let read = bytes_asked_for(&name.display().to_string());
+    assert!(read <= 20 * 4, "{read} bytes were kept of files of 8 MiB");
+}
+
+/// The bytes that the reader asks for of the files beside a glTF.
+fn bytes_asked_for(name: &str) -> u64 {
+    use shapeloom::io::{ReadContext, SiblingError, SiblingName, Siblings, read};
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    struct Counting(Arc<AtomicU64>);
+    impl Siblings for Counting {
+        fn open(&self, _: &SiblingName, max_bytes: u64) -> Result<Vec<u8>, SiblingError> {
+            self.0.fetch_add(max_bytes, Ordering::Relaxed);
+            Ok(vec![0; max_bytes.min(1 << 20) as usize])
+        }
+    }
+    let asked = Arc::new(AtomicU64::new(0));
+    let context = ReadContext { siblings: Some(Arc::new(Counting(Arc::clone(&asked)))), ..ReadContext::named(name) };
+    let bytes = fs::read(name).expect("a file");
+    let _ = read(&bytes, format_by_id("gltf").expect("a format"), &context);
+    asked.load(Ordering::Relaxed)
 }
 
 /// Shapes without size need no scale where no step needs a tolerance.
