@@ -81,8 +81,9 @@ pub fn slurp(mut reader: impl Read, limits: &Limits, exec: &Exec) -> Result<Vec<
     const PIECE: u64 = 1 << 20;
     let mut bytes = Vec::new();
     loop {
+        let piece = reader.by_ref().take(PIECE).read_to_end(&mut bytes);
         exec.check()?;
-        match reader.by_ref().take(PIECE).read_to_end(&mut bytes) {
+        match piece {
             Ok(0) => return Ok(bytes),
             Ok(_) if bytes.len() as u64 > limits.max_bytes => return Err(too_long(limits.max_bytes).into()),
             Ok(_) => {}
