@@ -88,6 +88,25 @@ pub(crate) struct WayArguments {
     pub(crate) settings: Vec<(String, String)>,
 }
 
+/// Where a result goes, for every command that writes a shape.
+#[derive(Debug, Args)]
+pub(crate) struct TargetArguments {
+    /// The file to write, or - for standard output; missing folders are made
+    pub(crate) output: PathBuf,
+    /// The format of the output, if its extension does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) to: Option<String>,
+    /// Also draw the result
+    #[arg(long, value_name = "OUT.png")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Also write the account of what was done
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
 impl WayArguments {
     /// The tolerance as it was written. Read here and not by the parser, so that a wrong one has a code of its own.
     pub(crate) fn tolerance(&self) -> Result<Tolerance, ToleranceError> {
@@ -99,25 +118,13 @@ impl WayArguments {
 pub(crate) struct ConvertArguments {
     /// The file to read, or - for standard input
     pub(crate) input: PathBuf,
-    /// The file to write, or - for standard output; missing folders are made
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) target: TargetArguments,
     #[command(flatten)]
     pub(crate) way: WayArguments,
     /// The format of the input, if its content does not tell
     #[arg(long, value_name = "FORMAT")]
     pub(crate) from: Option<String>,
-    /// The format of the output, if its extension does not tell
-    #[arg(long, value_name = "FORMAT")]
-    pub(crate) to: Option<String>,
-    /// Also draw the result
-    #[arg(long, value_name = "OUT.png")]
-    pub(crate) picture: Option<PathBuf>,
-    /// Also write the account of the conversion
-    #[arg(long, value_name = "FILE.json")]
-    pub(crate) report: Option<PathBuf>,
-    /// Replace files that exist
-    #[arg(long)]
-    pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]
@@ -168,20 +175,11 @@ pub(crate) struct RenderArguments {
 pub(crate) struct MakeArguments {
     /// Which shape: tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, torus, cylinder, cone or grid
     pub(crate) shape: String,
-    /// The file to write, or - for standard output; missing folders are made
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) target: TargetArguments,
     /// An option of the shape, as often as needed: key=value
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<(String, String)>,
-    /// The format of the output, if its extension does not tell
-    #[arg(long, value_name = "FORMAT")]
-    pub(crate) to: Option<String>,
-    /// Also draw the shape
-    #[arg(long, value_name = "OUT.png")]
-    pub(crate) picture: Option<PathBuf>,
-    /// Replace files that exist
-    #[arg(long)]
-    pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]

@@ -13,6 +13,7 @@ pub mod primitives;
 
 mod attributes;
 mod carry;
+mod collapsed;
 mod column;
 mod ear_clipping;
 mod error;
@@ -31,6 +32,7 @@ mod weld;
 
 pub use attributes::{Attributes, COLOR, NORMAL, PATCH, TEXCOORD};
 pub use carry::{MeshOrigins, Origins, carry};
+pub use collapsed::collapsed_leave_traces;
 pub use column::{Blend, Column, TransformRule, Values};
 pub use error::{AttributeError, Domain, MeshError};
 pub use height_field::HeightField;

@@ -1,13 +1,13 @@
 //! Merging of vertices.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
     Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Loss, Options, Report, options,
 };
 
-use crate::{Column, Domain, MeshError, MeshOrigins, Origins, TriMesh, carry};
+use crate::{Column, Domain, MeshError, MeshOrigins, Origins, TriMesh, carry, collapsed_leave_traces};
 
 options! {
     /// Merges vertices that lie within a distance of each other, and drops triangles that collapse.
@@ -69,7 +69,7 @@ impl Convert<TriMesh> for Weld {
             report.deviation = Deviation::AtMost(moved);
             report.basis = "the largest move of a vertex".to_owned();
         }
-        if !traces_are_left(&gone, &triangles) {
+        if !collapsed_leave_traces(&gone, &triangles) {
             report.deviation = Deviation::Unknown;
             report.basis = "parts of the surface collapsed to points or segments and were dropped".to_owned();
         }
@@ -160,17 +160,6 @@ fn group_equal(positions: &[DVec3], exec: &Exec) -> Result<Groups, ConvertError>
         groups.of.push(group);
     }
     Ok(groups)
-}
-
-/// Whether what each collapsed triangle shrank to, a vertex or an edge, is still part of a triangle that is left.
-fn traces_are_left(gone: &[[u32; 3]], left: &[[u32; 3]]) -> bool {
-    if gone.is_empty() {
-        return true;
-    }
-    let sides = |[a, b, c]: [u32; 3]| [(a, b), (b, c), (c, a), (a, a), (b, b), (c, c)];
-    let edges: HashSet<(u32, u32)> =
-        left.iter().flat_map(|&triangle| sides(triangle)).map(|(a, b)| (a.min(b), a.max(b))).collect();
-    gone.iter().all(|&[a, b, c]| edges.contains(&(a.min(b).min(c), a.max(b).max(c))))
 }
 
 /// Moves the vertex attributes about which merged vertices disagree to the wedges.

@@ -1,8 +1,9 @@
 //! Tensor-product Bézier patches.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Aabb, Affine, Interval, Surface, SurfaceJet, VectorSpace};
+use shapeloom_core::{Aabb, Affine, Interval, Surface, SurfaceJet};
 
+use crate::curvature_net::CurvatureNets;
 use crate::de_casteljau::{self, MAX_DEGREE};
 use crate::{BezierCurve, BezierError, PatchSide};
 
@@ -181,26 +182,9 @@ impl BezierPatch {
     }
 
     /// Bounds of the second derivatives over the whole patch, from the second differences of the control net: each
-    /// derivative lies in the convex hull of its differences.
+    /// derivative lies in the convex hull of its differences. The rounding of the differences is counted in.
     pub fn second_derivative_bounds(&self) -> SecondDerivativeBounds {
-        let (m, n) = (self.degree_u, self.degree_v);
-        let at = |i: usize, j: usize| self.control[j * (m + 1) + i];
-        let (mut uu, mut uv, mut vv) = (0.0f64, 0.0f64, 0.0f64);
-        for j in 0..=n {
-            for i in 0..=m {
-                if i >= 2 {
-                    uu = uu.max(VectorSpace::length(at(i, j) - 2.0 * at(i - 1, j) + at(i - 2, j)));
-                }
-                if j >= 2 {
-                    vv = vv.max(VectorSpace::length(at(i, j) - 2.0 * at(i, j - 1) + at(i, j - 2)));
-                }
-                if i >= 1 && j >= 1 {
-                    uv = uv.max(VectorSpace::length((at(i, j) - at(i - 1, j)) - (at(i, j - 1) - at(i - 1, j - 1))));
-                }
-            }
-        }
-        let (m, n) = (m as f64, n as f64);
-        SecondDerivativeBounds { uu: m * (m - 1.0).max(0.0) * uu, uv: m * n * uv, vv: n * (n - 1.0).max(0.0) * vv }
+        CurvatureNets::new(self).whole()
     }
 
     /// The unit normal at `(u, v)`, or where the patch degenerates there the limit towards its middle, found by

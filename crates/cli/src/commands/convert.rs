@@ -1,6 +1,6 @@
 //! `convert`: any file to any file.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use shapeloom_convert::{Conversion, Job, Wish, convert_shape, plan};
@@ -11,25 +11,18 @@ use shapeloom_shape::{Kind, Shape};
 use super::draw;
 use super::render::check_png;
 use crate::account;
-use crate::arguments::{ConvertArguments, WayArguments};
+use crate::arguments::{ConvertArguments, TargetArguments, WayArguments};
 use crate::failure::Failure;
 use crate::input::{self, is_stream};
 use crate::output::{check_apart, check_free, commit, stage};
 use crate::session::Session;
 
 pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let format = output_format(&arguments.output, arguments.to.as_deref())?;
+    let delivery = Delivery::new(&arguments.target)?;
     let tolerance = arguments.way.tolerance()?;
     let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
-    let delivery = Delivery {
-        output: &arguments.output,
-        format,
-        picture: arguments.picture.as_deref(),
-        report: arguments.report.as_deref(),
-        force: arguments.force,
-    };
     delivery.check(session)?;
-    let wish = wish(&arguments.way, format.kinds)?;
+    let wish = wish(&arguments.way, delivery.format.kinds)?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
     let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
     let source = json!({
@@ -40,7 +33,7 @@ pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Re
 }
 
 /// The format to write: the one named, else by extension.
-pub(crate) fn output_format(path: &Path, to: Option<&str>) -> Result<&'static Format, Failure> {
+fn output_format(path: &Path, to: Option<&str>) -> Result<&'static Format, Failure> {
     let format = match to {
         Some(id) => format_by_id(id)?,
         None if is_stream(path) => {
@@ -88,24 +81,33 @@ pub(crate) fn absolute(tolerance: Tolerance, shape: &Shape, wish: &Wish) -> Resu
 
 /// Where a result goes, in which forms.
 pub(crate) struct Delivery<'a> {
-    pub(crate) output: &'a Path,
+    target: &'a TargetArguments,
     pub(crate) format: &'static Format,
-    pub(crate) picture: Option<&'a Path>,
-    pub(crate) report: Option<&'a Path>,
-    pub(crate) force: bool,
 }
 
-impl Delivery<'_> {
+impl<'a> Delivery<'a> {
+    /// # Errors
+    /// No format that can be written is named or told by the extension.
+    pub(crate) fn new(target: &'a TargetArguments) -> Result<Self, Failure> {
+        Ok(Self { target, format: output_format(&target.output, target.to.as_deref())? })
+    }
+
+    /// Every output, the shape's own first.
+    fn paths(&self) -> impl Iterator<Item = &'a Path> {
+        let TargetArguments { output, picture, report, .. } = self.target;
+        std::iter::once(output).chain(picture).chain(report).map(PathBuf::as_path)
+    }
+
     /// Refuses outputs that cannot be, before any work is done.
     pub(crate) fn check(&self, session: &Session<'_>) -> Result<(), Failure> {
-        let paths: Vec<&Path> = [Some(self.output), self.picture, self.report].into_iter().flatten().collect();
+        let paths: Vec<&Path> = self.paths().collect();
         check_apart(&paths)?;
-        self.picture.map_or(Ok(()), check_png)?;
+        self.target.picture.as_deref().map_or(Ok(()), check_png)?;
         if session.globals.json && paths.iter().any(|path| is_stream(path)) {
             let message = "--json and an output of - both want standard output: expected one of them";
             return Err(Failure::usage("E-usage-outputs", message));
         }
-        paths.into_iter().try_for_each(|path| check_free(path, self.force))
+        paths.into_iter().try_for_each(|path| check_free(path, self.target.force))
     }
 
     /// Converts a shape, itself `made` with some deviation, and writes everything, or nothing.
@@ -127,7 +129,7 @@ impl Delivery<'_> {
         session.stage("writing");
         let before = made.then(conversion.deviation);
         let strict = session.globals.strict;
-        let mut staged = vec![stage(self.output, self.force, |out| {
+        let mut staged = vec![stage(&self.target.output, self.target.force, |out| {
             let report = write(&conversion.shape, self.format, &WriteContext { exec }, out)?;
             if strict {
                 check_strict(before.then(report.deviation), job.tolerance)?;
@@ -140,23 +142,23 @@ impl Delivery<'_> {
         let account = json!({
             "schema": "shapeloom.convert/1",
             "input": source,
-            "output": { "name": self.output.display().to_string(), "format": self.format.id },
+            "output": { "name": self.target.output.display().to_string(), "format": self.format.id },
             "tolerance": account::number(job.tolerance),
             "steps": account::steps(&conversion, session.globals.timings),
             "writing": account::report(&written),
             "deviation": account::deviation(deviation),
             "within_tolerance": deviation.is_within(job.tolerance),
         });
-        if let Some(path) = self.picture {
+        if let Some(path) = self.target.picture.as_deref() {
             session.stage("drawing");
             let image = draw::picture_of(&conversion.shape, job.tolerance, &draw::Look::of_session(session), session)?;
             let bytes = image.to_png()?;
-            staged.push(stage(path, self.force, |out| {
+            staged.push(stage(path, self.target.force, |out| {
                 out.write_all(&bytes).map_err(|error| Failure::write(path, &error))
             })?);
         }
-        if let Some(path) = self.report {
-            staged.push(stage(path, self.force, |out| {
+        if let Some(path) = self.target.report.as_deref() {
+            staged.push(stage(path, self.target.force, |out| {
                 writeln!(out, "{account:#}").map_err(|error| Failure::write(path, &error))
             })?);
         }
@@ -187,9 +189,7 @@ impl Delivery<'_> {
         for loss in &written.losses {
             session.say(format_args!("lost: {loss}"));
         }
-        let mut names = vec![self.output.display().to_string()];
-        names.extend(self.picture.map(|path| path.display().to_string()));
-        names.extend(self.report.map(|path| path.display().to_string()));
+        let names: Vec<String> = self.paths().map(|path| path.display().to_string()).collect();
         session.say(format_args!("wrote {}; error {deviation}", names.join(", ")));
     }
 }

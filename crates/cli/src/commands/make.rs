@@ -7,21 +7,14 @@ use shapeloom_mesh::PolyMesh;
 use shapeloom_mesh::primitives::{Cone, Cylinder, Grid, Platonic, Solid, Sphere, Torus};
 use shapeloom_shape::{Part, Shape, UpAxis};
 
-use super::convert::{Delivery, output_format};
+use super::convert::Delivery;
 use crate::account;
 use crate::arguments::MakeArguments;
 use crate::failure::Failure;
 use crate::session::Session;
 
 pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let format = output_format(&arguments.output, arguments.to.as_deref())?;
-    let delivery = Delivery {
-        output: &arguments.output,
-        format,
-        picture: arguments.picture.as_deref(),
-        report: None,
-        force: arguments.force,
-    };
+    let delivery = Delivery::new(&arguments.target)?;
     delivery.check(session)?;
     let made = make(&arguments.shape, &arguments.settings, &session.exec())?;
     session.say(format_args!(
@@ -35,7 +28,7 @@ pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Resul
     let source = json!({ "shape": arguments.shape, "report": account::report(&made.report) });
     // For judging the facets, which are fixed by the shape's own options.
     let tolerance = Tolerance::OfDiagonal(1e-3).resolve(diagonal)?;
-    let job = Job { wish: Wish::to(format.kinds), tolerance, settings: Vec::new() };
+    let job = Job { wish: Wish::to(delivery.format.kinds), tolerance, settings: Vec::new() };
     delivery.deliver(source, &shape, made.report.deviation, &job, session)
 }
 

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use shapeloom_core::glam::DVec3;
 
 use crate::tessellate_curve::{fewest_segments, segments_for};
-use crate::{BezierCurve, BezierSurface, PatchSide};
+use crate::{BezierCurve, BezierSurface, PatchSide, TessellationError};
 
 /// A boundary curve that one or more patches share.
 pub(super) struct Edge {
@@ -76,21 +76,29 @@ impl EdgeTable {
         Self { edges, sides }
     }
 
-    /// Samples each edge by its own bound: as many equal steps as keep its chords within `share`. Returns the first edge
-    /// that needs more than `allowed`, with their number.
-    pub(super) fn sample(&mut self, share: f64, allowed: u32) -> Result<(), (usize, f64)> {
-        for (index, edge) in self.edges.iter_mut().enumerate() {
-            let found = segments_for(edge.curve.second_derivative_bound(), share);
-            if found > f64::from(allowed) {
-                return Err((index, found));
+    /// Samples each edge by its own bound: as many equal steps as keep its chords within `share`.
+    ///
+    /// # Errors
+    /// An edge that needs more than `allowed`, or whose second differences overflow, told by the first patch that uses it.
+    pub(super) fn sample(&mut self, share: f64, allowed: u32) -> Result<(), TessellationError> {
+        for index in 0..self.edges.len() {
+            let curve = &self.edges[index].curve;
+            let bound = curve.second_derivative_bound();
+            let found = segments_for(bound, share);
+            if !bound.is_finite() {
+                return Err(TessellationError::TooLarge { kind: "patch", index: self.patch_of(index) });
             }
-            edge.segments = (found as u32).max(fewest_segments(&edge.curve));
+            if found > f64::from(allowed) {
+                let index = self.patch_of(index);
+                return Err(TessellationError::TooManySegments { kind: "patch", index, found, allowed });
+            }
+            self.edges[index].segments = (found as u32).max(fewest_segments(curve));
         }
         Ok(())
     }
 
     /// The patch that first uses an edge.
-    pub(super) fn patch_of(&self, edge: usize) -> usize {
+    fn patch_of(&self, edge: usize) -> usize {
         let uses = |sides: &[SideUse; 4]| sides.iter().any(|side| side.edge as usize == edge);
         self.sides.iter().position(uses).unwrap_or(0)
     }

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ConvertError, Curve, Exec, Surface, parallel};
-use shapeloom_mesh::{Column, Domain, MeshError, NORMAL, PATCH, TEXCOORD, TriMesh, triangle_normal};
+use shapeloom_mesh::{
+    Column, Domain, MeshError, NORMAL, PATCH, TEXCOORD, TriMesh, collapsed_leave_traces, triangle_normal,
+};
 
 use super::TessellatePatches;
 use super::edges::{EdgeTable, bits};
@@ -47,8 +49,8 @@ struct PatchMesh {
     triangles: Vec<[u32; 3]>,
     normals: Vec<DVec3>,
     parameters: Vec<[f64; 2]>,
-    /// What the triangles with two equal corners shrank to: a segment, or a point as a segment without length.
-    shrunk: Vec<[u32; 2]>,
+    /// Triangles with two equal corners, which are left out.
+    collapsed: Vec<[u32; 3]>,
     degenerate: bool,
     vanished: bool,
 }
@@ -193,7 +195,7 @@ impl PatchJob<'_> {
             }
             Ok::<_, ConvertError>(())
         })?;
-        mesh.vanished = !traces_are_left(&mut mesh.shrunk, &mesh.triangles);
+        mesh.vanished = !collapsed_leave_traces(&mesh.collapsed, &mesh.triangles);
         Ok(mesh)
     }
 
@@ -298,7 +300,7 @@ impl PatchJob<'_> {
     ) {
         let ids = triangle.map(|corner| corner.vertex);
         if ids[0] == ids[1] || ids[1] == ids[2] || ids[2] == ids[0] {
-            mesh.shrunk.push([ids[0].min(ids[1]).min(ids[2]), ids[0].max(ids[1]).max(ids[2])]);
+            mesh.collapsed.push(ids);
             return;
         }
         let facet = triangle_normal(ids.map(|vertex| self.position(vertex, &mesh.inner)));
@@ -343,23 +345,4 @@ impl PatchJob<'_> {
             }
         }
     }
-}
-
-/// Whether every segment that a left-out triangle shrank to is still the side of a triangle: then nothing is missing from
-/// the surface, and the bound of the left-out triangle holds for the one beside it.
-fn traces_are_left(shrunk: &mut Vec<[u32; 2]>, triangles: &[[u32; 3]]) -> bool {
-    if shrunk.is_empty() {
-        return true;
-    }
-    shrunk.sort_unstable();
-    shrunk.dedup();
-    let mut seen = vec![false; shrunk.len()];
-    for &[a, b, c] in triangles {
-        for [p, q] in [[a, b], [b, c], [c, a], [a, a], [b, b], [c, c]] {
-            if let Ok(found) = shrunk.binary_search(&[p.min(q), p.max(q)]) {
-                seen[found] = true;
-            }
-        }
-    }
-    seen.into_iter().all(|seen| seen)
 }

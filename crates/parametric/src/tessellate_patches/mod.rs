@@ -12,7 +12,7 @@ use shapeloom_core::{
 use shapeloom_mesh::TriMesh;
 
 use crate::tessellate_curve::{chord_share, rounding};
-use crate::{BezierPatch, BezierSurface, TessellationError};
+use crate::{BezierSurface, TessellationError};
 use edges::EdgeTable;
 use plan::{Demand, MAX_ROUNDS, PatchPlan, examine, layout_for};
 
@@ -69,21 +69,10 @@ impl Convert<BezierSurface> for TessellatePatches {
         let rounding = roundings.iter().copied().fold(0.0, f64::max);
         let share = chord_share(self.chord_tolerance, rounding)?;
         exec.check()?;
-        let overflows = |patch: &BezierPatch| {
-            let bounds = patch.second_derivative_bounds();
-            !(bounds.uu.is_finite() && bounds.uv.is_finite() && bounds.vv.is_finite())
-        };
-        if let Some(index) = source.patches.iter().position(overflows) {
-            return Err(TessellationError::TooLarge { kind: "patch", index }.into());
-        }
         let _plan_memory = exec.reserve_elements(source.control_point_count() as u64, 4 * 3 * 8)?;
 
         let mut table = EdgeTable::new(source);
-        let too_many =
-            |kind, index, found| TessellationError::TooManySegments { kind, index, found, allowed: self.max_segments };
-        table
-            .sample(share, self.max_segments)
-            .map_err(|(edge, found)| too_many("patch", table.patch_of(edge), found))?;
+        table.sample(share, self.max_segments)?;
         let own: Vec<u32> = table.edges.iter().map(|edge| edge.segments).collect();
         let demands = self.refine(source, &mut table, share, &exec.part(0.0, 0.5))?;
 
@@ -137,8 +126,7 @@ impl TessellatePatches {
             ConvertError::from(TessellationError::TooManySegments { kind: "patch", index, found, allowed })
         };
         let mut plans: Vec<PatchPlan> = parallel::map_chunks(exec, count, 1, |part| {
-            let patch = part.start;
-            PatchPlan::new(&source.patches[patch], share, allowed).map_err(|found| too_many(patch, found))
+            PatchPlan::new(source, part.start, share, allowed).map_err(ConvertError::from)
         })?;
         for round in 0..MAX_ROUNDS {
             let layouts: Vec<_> = (0..count).map(|patch| layout_for(table, patch, plans[patch].grid)).collect();

@@ -5,7 +5,7 @@ use shapeloom_core::{Exec, Interval, Stop};
 use super::edges::EdgeTable;
 use super::layout::{Layout, Node};
 use crate::curvature_net::{CurvatureNets, Scratch};
-use crate::{BezierPatch, PatchSide, SecondDerivativeBounds};
+use crate::{BezierSurface, PatchSide, SecondDerivativeBounds, TessellationError};
 
 /// What a patch needs: its grid, and how many segments each side must have at least.
 pub(super) struct Demand {
@@ -137,9 +137,21 @@ pub(super) struct PatchPlan {
 }
 
 impl PatchPlan {
-    pub(super) fn new(patch: &BezierPatch, share: f64, allowed: u32) -> Result<Self, f64> {
-        let nets = CurvatureNets::new(patch);
-        let grid = grid_for(&nets.whole(), share, allowed)?;
+    /// # Errors
+    /// The patch needs more than `allowed` segments along a side, or its second differences overflow.
+    pub(super) fn new(
+        surface: &BezierSurface,
+        index: usize,
+        share: f64,
+        allowed: u32,
+    ) -> Result<Self, TessellationError> {
+        let nets = CurvatureNets::new(&surface.patches[index]);
+        let bounds = nets.whole();
+        if !(bounds.uu.is_finite() && bounds.uv.is_finite() && bounds.vv.is_finite()) {
+            return Err(TessellationError::TooLarge { kind: "patch", index });
+        }
+        let too_many = |found| TessellationError::TooManySegments { kind: "patch", index, found, allowed };
+        let grid = grid_for(&bounds, share, allowed).map_err(too_many)?;
         Ok(Self { nets, grid, demand: None })
     }
 }
