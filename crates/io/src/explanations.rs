@@ -76,6 +76,22 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-gltf-uri", "An embedded buffer is not base64 data."),
     ("E-gltf-version", "Only version 2.0 of glTF is read."),
+    (
+        "E-obj-finite",
+        "A coordinate is infinite, not a number, or beyond 1.8e308. Vertices are counted from 0 here. `--drop-non-finite` leaves such vertices out.",
+    ),
+    ("E-obj-freeform", "The file holds free-form curves or surfaces, which are not read yet. Export it as polygons."),
+    (
+        "E-obj-index",
+        "A face, line or point names something that does not exist. OBJ counts from 1, and from -1 backwards.",
+    ),
+    ("E-obj-limit", "The file has more elements or a larger polygon than the limits allow."),
+    ("E-obj-mesh", "The elements do not make a mesh."),
+    (
+        "E-obj-number",
+        "A number, or the index of a corner, does not read as one. Decimal numbers only: no commas, no hexadecimal.",
+    ),
+    ("E-obj-row", "A vertex, normal or texture coordinate has too few or too many numbers."),
     ("E-read-elements", "There are more elements than 32 bits can tell apart. Cut the shape into parts."),
     ("E-read-format", "Files of this format are recognized and written, but not read yet."),
     ("E-read-io", "The input could not be read to its end."),
@@ -125,6 +141,24 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
+    (
+        "W-obj-color",
+        "Vertex colours that are missing for some vertices or not finite were passed over; whole numbers were taken as bytes.",
+    ),
+    ("W-obj-corner", "Some corners of faces name no normal or texture coordinate where others do."),
+    (
+        "W-obj-degenerate",
+        "A face names a vertex twice or has no area and was kept, or has fewer than three corners and was passed over.",
+    ),
+    ("W-obj-empty", "The file has no vertices."),
+    ("W-obj-finite", "A normal or texture coordinate is infinite or not a number."),
+    ("W-obj-ignored", "A statement carries nothing that a mesh holds."),
+    ("W-obj-library", "A material library was not read, in whole or in part: materials keep their names."),
+    ("W-obj-material", "A material is used that no library has: only its name is known."),
+    ("W-obj-smoothing", "A smoothing group is neither a number nor off."),
+    ("W-obj-statement", "A line begins with a word that OBJ does not have."),
+    ("W-obj-texture", "A texture that a material names is not beside the file. Its name was kept."),
+    ("W-obj-weight", "A vertex has the weight 0. Weights mean nothing for polygons; they are kept as a column."),
     ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
 ];
 

@@ -4,6 +4,11 @@
 //! up; colours follow the position as fractions in sRGB; each part is an object `o`; lines are `l`, points `p`. Texture
 //! coordinates and normals that are equal bit by bit are written once in a file.
 
+mod assemble;
+mod labels;
+mod mtl;
+mod read;
+mod statements;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -27,7 +32,7 @@ pub(crate) const FORMAT: Format = Format {
     read_options: &[],
     write_options: &[],
     sniff,
-    reads: None,
+    reads: Some(read::read),
     writes: Some(write::write),
 };
 

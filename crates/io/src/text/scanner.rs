@@ -240,10 +240,12 @@ pub(crate) fn in_lines(text: &[u8], mut fault: Box<Fault>) -> Box<Fault> {
     fault
 }
 
-/// An offset made a line of its text; other places stay.
+/// An offset made a line of its text; other places stay, and so does an offset where there is no text.
 pub(crate) fn line_place(text: &[u8], place: Place) -> Place {
     match place {
-        Place::Byte(offset) => Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX))),
+        Place::Byte(offset) if !text.is_empty() => {
+            Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX)))
+        }
         place => place,
     }
 }
