@@ -4,6 +4,8 @@
 //! are parts of their own, with copies of their vertices. Groups, smoothing groups and, where a part has several,
 //! materials are columns of its faces.
 
+use std::ops::Range;
+
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Category, Findings, Loss, Place, Severity};
 use shapeloom_mesh::{
@@ -48,7 +50,7 @@ pub(super) fn assemble(
     memory.take(whole.positions.len(), 4 * size_of::<DVec3>())?;
     memory.take(whole.face_normals.len(), 2 * size_of::<DVec3>())?;
     memory.take(whole.face_texcoords.len(), 2 * size_of::<[f64; 2]>())?;
-    let columns = vertex_columns(&mut whole, findings)?;
+    let columns = VertexColumns::take(&mut whole, findings)?;
     if whole.deep_texcoords {
         losses.push(Loss::new("third texture coordinates", "shapes keep two"));
     }
@@ -68,10 +70,11 @@ pub(super) fn assemble(
             let what = format!("{} vertices shared between faces and lines or points", owners.copied);
             losses.push(Loss::new(what, "each of these parts has its own copies"));
         }
-        let mesh = whole_mesh(&mut whole, columns, findings)?;
+        let colorless = columns.colorless;
+        let mesh = whole_mesh(&mut whole, columns.list, findings)?;
         let place = |face| whole.face_in_text(face);
         audit::degenerate_faces(&mesh, "W-obj-degenerate", &context.exec, findings, place)?;
-        mesh_parts = owners.cut(mesh, memory)?;
+        mesh_parts = owners.cut(mesh, &colorless, memory)?;
         for (_, faces, geometry) in &mut mesh_parts {
             labelled(geometry, faces, &owners, &statements, memory)?;
         }
@@ -79,7 +82,7 @@ pub(super) fn assemble(
         // Vertices alone are points.
         let name = statements.objects.last().cloned().unwrap_or_default();
         let mut cloud = PointCloud::new(std::mem::take(&mut whole.positions));
-        columns.into_iter().try_for_each(|column| cloud.insert_attribute(column)).map_err(unfit)?;
+        columns.list.into_iter().try_for_each(|column| cloud.insert_attribute(column)).map_err(unfit)?;
         shape.parts.push(Part::new(cloud).named(name));
     }
     let of_runs = |runs: &[Run], object: u32| {
@@ -115,28 +118,56 @@ fn no_mesh(error: MeshError) -> ReadError {
 }
 
 /// Colours and weights as columns of all vertices.
-fn vertex_columns(whole: &mut Whole<'_>, findings: &mut Findings) -> Result<Vec<Column>, ReadError> {
-    let mut columns = Vec::new();
-    let colors = std::mem::take(&mut whole.colors);
-    if !colors.values.is_empty() {
-        columns.extend(color_column(&colors, findings).transpose()?);
+struct VertexColumns {
+    list: Vec<Column>,
+    /// The vertices without a colour, where others have one; else empty.
+    colorless: Vec<bool>,
+}
+
+impl VertexColumns {
+    fn take(whole: &mut Whole<'_>, findings: &mut Findings) -> Result<Self, ReadError> {
+        let mut list = Vec::new();
+        let mut colorless = Vec::new();
+        let mut colors = std::mem::take(&mut whole.colors);
+        let missing = |color: &[f64; 4]| color.iter().any(|number| !number.is_finite());
+        if !colors.values.is_empty() {
+            let count = colors.values.as_slice().iter().filter(|color| missing(color)).count();
+            if count > 0 {
+                let message =
+                    format!("{count} vertices have no colour, or one that is not finite, where others have one");
+                findings.push("W-obj-color", Severity::Note, Place::Whole, message);
+                colorless = colors.values.as_slice().iter().map(missing).collect();
+                colors
+                    .values
+                    .as_mut_slice()
+                    .iter_mut()
+                    .filter(|color| missing(color))
+                    .for_each(|color| *color = [1.0; 4]);
+            }
+            list.push(color_column(&colors, findings)?);
+        }
+        let weights = std::mem::take(&mut whole.weights).values.into_vec();
+        if weights.iter().any(|&weight| weight != 1.0) {
+            list.push(Column::try_new(WEIGHT, 1, Values::F64(weights)).map_err(unfit)?);
+        }
+        Ok(Self { list, colorless })
     }
-    let weights = std::mem::take(&mut whole.weights).values.into_vec();
-    if weights.iter().any(|&weight| weight != 1.0) {
-        columns.push(Column::try_new(WEIGHT, 1, Values::F64(weights)).map_err(unfit)?);
+
+    /// The columns that a part of these vertices has: no colours where none of them has one.
+    fn of(&self, vertices: &[u32]) -> impl Iterator<Item = &Column> {
+        let plain = all_colorless(&self.colorless, vertices);
+        self.list.iter().filter(move |column| !(plain && column.name() == COLOR))
     }
-    Ok(columns)
+}
+
+fn all_colorless(colorless: &[bool], vertices: &[u32]) -> bool {
+    !colorless.is_empty() && vertices.iter().all(|&vertex| colorless[vertex as usize])
 }
 
 /// Fractions that are 255ths up to the digits that programs write are bytes; others are made linear.
-fn color_column(colors: &Side<[f64; 4]>, findings: &mut Findings) -> Option<Result<Column, ReadError>> {
+fn color_column(colors: &Side<[f64; 4]>, findings: &mut Findings) -> Result<Column, ReadError> {
     let width = usize::from(colors.numbers);
     let numbers = || colors.values.as_slice().iter().flat_map(move |color| color[..width].iter().copied());
-    if numbers().any(|number| !number.is_finite()) {
-        let message = "some vertices have no colour, or one that is not finite: colours were passed over";
-        findings.push("W-obj-color", Severity::Warning, Place::Whole, message);
-        return None;
-    }
     let bytes = |scale: f64, slack: f64| -> Option<Vec<u8>> {
         let byte = |number: f64| {
             let scaled = number * scale;
@@ -160,7 +191,7 @@ fn color_column(colors: &Side<[f64; 4]>, findings: &mut Findings) -> Option<Resu
         let of = |(at, number): (usize, f64)| if at % width == 3 { number } else { linear(number) };
         Values::F64(numbers().enumerate().map(of).collect())
     });
-    Some(Column::try_new(COLOR, width, values).map_err(unfit))
+    Column::try_new(COLOR, width, values).map_err(unfit)
 }
 
 /// Texture coordinates and normals that no face names.
@@ -256,7 +287,7 @@ fn corner_column(
 /// Lines and points as parts: object, face domain for lines and vertex domain for points, geometry.
 struct Sides<'w, 't> {
     whole: &'w Whole<'t>,
-    columns: &'w [Column],
+    columns: &'w VertexColumns,
     parts: Vec<(u32, Domain, Geometry)>,
 }
 
@@ -273,10 +304,10 @@ impl Sides<'_, '_> {
             let object = runs[0].labels.object;
             let points: Vec<u32> =
                 runs.iter().flat_map(|run| self.whole.points[run.elements.clone()].iter().copied()).collect();
-            let width: usize = self.columns.iter().map(|column| 8 * column.width()).sum();
+            let width: usize = self.columns.list.iter().map(|column| 8 * column.width()).sum();
             memory.take(points.len(), 2 * size_of::<DVec3>() + width)?;
             let mut cloud = PointCloud::new(self.gathered(&points));
-            for column in self.columns {
+            for column in self.columns.of(&points) {
                 cloud.insert_attribute(column.gathered(&points)).map_err(unfit)?;
             }
             self.parts.push((object, Domain::Vertex, cloud.into()));
@@ -300,7 +331,7 @@ impl Sides<'_, '_> {
             let start = line.checked_sub(1).map_or(0, |before| ends[before] as usize);
             &self.whole.lines[start..ends[line] as usize]
         };
-        let width: usize = self.columns.iter().map(|column| 8 * column.width()).sum();
+        let width: usize = self.columns.list.iter().map(|column| 8 * column.width()).sum();
         let corners: usize = lines.clone().map(|line| of(line).len()).sum();
         memory.take(corners, 2 * size_of::<DVec3>() + 12 + width)?;
         let mut rest = lines.clone();
@@ -309,7 +340,7 @@ impl Sides<'_, '_> {
             let closed = vertices.len() > 3 && vertices.first() == vertices.last();
             let vertices = if closed { &vertices[..vertices.len() - 1] } else { vertices };
             let mut line = Polyline::new(self.gathered(vertices), closed);
-            for column in self.columns {
+            for column in self.columns.of(vertices) {
                 line.insert_attribute(column.gathered(vertices)).map_err(unfit)?;
             }
             return Ok(line.into());
@@ -339,7 +370,7 @@ impl Sides<'_, '_> {
             new_of_old[vertex as usize] = NONE;
         }
         let mut graph = GeometricGraph::try_new(self.gathered(&vertices), edges).map_err(no_mesh)?;
-        for column in self.columns {
+        for column in self.columns.of(&vertices) {
             graph.insert_vertex_attribute(column.gathered(&vertices)).map_err(unfit)?;
         }
         Ok(graph.into())
@@ -367,7 +398,13 @@ impl Owners {
     fn find(whole: &Whole<'_>, statements: &Statements, memory: &mut Memory<'_>) -> Result<Self, ReadError> {
         let mut meshes: Vec<u32> = by_object(&statements.faces).map(|runs| runs[0].labels.object).collect();
         let sides = !whole.lines.is_empty() || !whole.points.is_empty();
-        let face_runs = statements.faces.clone();
+        let mut face_runs = statements.faces.clone();
+        for run in &mut face_runs {
+            let Range { start, end } = run.elements;
+            let corners = whole.faces.range(start).start..whole.faces.range(end - 1).end;
+            run.bare = [&whole.face_texcoords, &whole.face_normals]
+                .map(|named| named.get(corners.clone()).is_none_or(|named| named.iter().all(|&index| index == NONE)));
+        }
         if meshes.len() == 1 && !sides {
             return Ok(Self { meshes, of_vertex: Vec::new(), together: false, copied: 0, face_runs });
         }
@@ -408,7 +445,12 @@ impl Owners {
     }
 
     /// The mesh of each object: its number, its faces as runs of the file's, and the mesh.
-    fn cut(&self, mesh: Geometry, memory: &mut Memory<'_>) -> Result<Vec<(u32, Vec<Run>, Geometry)>, ReadError> {
+    fn cut(
+        &self,
+        mesh: Geometry,
+        colorless: &[bool],
+        memory: &mut Memory<'_>,
+    ) -> Result<Vec<(u32, Vec<Run>, Geometry)>, ReadError> {
         if self.of_vertex.is_empty() || (self.meshes.len() == 1 && !self.of_vertex.contains(&NOBODY)) {
             return Ok(vec![(self.meshes[0], self.face_runs.clone(), mesh)]);
         }
@@ -429,7 +471,18 @@ impl Owners {
         let mut parts = Vec::with_capacity(groups.len());
         for ((runs, vertices), &object) in groups.into_iter().zip(vertices).zip(&self.meshes) {
             let faces = runs.iter().flat_map(|run| run.elements.clone()).map(|face| face as u32).collect();
-            let Some(part) = cut(&mesh, vertices, faces, &new_of_old).map_err(no_mesh)? else { continue };
+            let plain = all_colorless(colorless, &vertices);
+            let Some(mut part) = cut(&mesh, vertices, faces, &new_of_old).map_err(no_mesh)? else { continue };
+            let bare = |slot: usize| runs.iter().all(|run| run.bare[slot]);
+            for (absent, name) in [(plain, COLOR), (bare(0), TEXCOORD), (bare(1), NORMAL)] {
+                for domain in [Domain::Vertex, Domain::Wedge] {
+                    match &mut part {
+                        Geometry::TriMesh(part) if absent => drop(part.remove_attribute(domain, name)),
+                        Geometry::PolyMesh(part) if absent => drop(part.remove_attribute(domain, name)),
+                        _ => {}
+                    }
+                }
+            }
             // A part may have triangles alone where the file has not.
             let part = match part {
                 Geometry::PolyMesh(part) if part.triangle_count() == part.face_count() => {

@@ -33,6 +33,9 @@ impl Names {
             }
             name.push_str(&String::from_utf8_lossy(word));
         }
+        if name == super::NO_MATERIAL {
+            name.clear();
+        }
         if let Some(&id) = self.known.get(&name) {
             return Ok(id);
         }
@@ -58,6 +61,8 @@ pub(super) struct Labels {
 pub(super) struct Run {
     pub elements: Range<usize>,
     pub labels: Labels,
+    /// Whether no corner of these faces names a texture coordinate, and whether none names a normal.
+    pub bare: [bool; 2],
 }
 
 /// The statements of a whole file.
@@ -136,7 +141,7 @@ impl Statements {
         for (list, (from, to)) in lists.into_iter().zip(from.iter_mut().zip(to)) {
             if to > *from {
                 memory.take(1, 2 * size_of::<Run>())?;
-                list.push(Run { elements: *from..to, labels });
+                list.push(Run { elements: *from..to, labels, bare: [true; 2] });
                 *from = to;
             }
         }

@@ -53,8 +53,9 @@ pub(super) fn materials(
             Some(material) => material,
             None => {
                 if complete {
+                    let severity = if statements.libraries.is_empty() { Severity::Note } else { Severity::Warning };
                     let message = format!("no material library has \"{name}\"; only its name is known");
-                    findings.push("W-obj-material", Severity::Warning, Place::Byte(offset as u64), message);
+                    findings.push("W-obj-material", severity, Place::Byte(offset as u64), message);
                 }
                 Material { name: name.clone(), ..Material::default() }
             }

@@ -5,11 +5,12 @@ use std::ops::Range;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::map_chunks;
-use shapeloom_core::{Category, Findings, Place, Severity};
+use shapeloom_core::{Category, Findings, Limits, Place, Severity};
 use shapeloom_mesh::TriMesh;
 use shapeloom_shape::{Part, Shape};
 
 use super::assemble::assemble;
+use super::freeform;
 use super::statements::{Event, Indices, NONE, Piece, Side};
 use crate::faces::Faces;
 use crate::memory::{Growing, Memory};
@@ -83,7 +84,7 @@ pub(super) struct Whole<'t> {
 fn read_pieces(text: &[u8], parts: &[Range<usize>], context: &ReadContext) -> Result<ReadShape, ReadError> {
     let result =
         map_chunks(&context.exec, parts.len(), 1, |chunk| Piece::read(text, parts[chunk.start].clone(), context));
-    let read = result.map_err(|error| named(text, error))?;
+    let read = result.map_err(|error| named(text, error, &context.limits))?;
     let mut memory = Memory::new(&context.exec);
     let mut findings = Findings::default();
     let whole = put_together(text, read, &mut memory, &mut findings, context)?;
@@ -99,8 +100,9 @@ fn read_pieces(text: &[u8], parts: &[Range<usize>], context: &ReadContext) -> Re
 }
 
 /// An error about a vertex gets its number, which only the whole text tells.
-fn named(text: &[u8], error: ReadError) -> ReadError {
+fn named(text: &[u8], error: ReadError, limits: &Limits) -> ReadError {
     match error {
+        ReadError::Input(fault) if fault.code == "E-obj-freeform" => freeform::refusal(text, limits).into(),
         ReadError::Input(mut fault) if fault.within.as_deref() == Some("vertex") => {
             let Place::Byte(offset) = fault.place else { return fault.into() };
             let mut scan = Scanner::new(text, 0);
@@ -109,7 +111,8 @@ fn named(text: &[u8], error: ReadError) -> ReadError {
                 vertices += u64::from(scan.word() == b"v");
                 scan.next_line();
             }
-            fault.within = Some(format!("vertex {vertices}"));
+            // The one whose line the fault is in was counted too.
+            fault.within = Some(format!("vertex {}", vertices.saturating_sub(1)));
             fault.into()
         }
         error => error,

@@ -371,11 +371,11 @@ impl<'e> Piece<'e> {
                 let fault = Fault::new("E-obj-index", at.place(), "index 0", format!("a {of} from 1, or from -1 back"));
                 Err(fault.advice("OBJ counts from 1; was it written from 0?").into())
             }
-            Ok(_) => {
+            Ok((value, _)) if value <= i64::MAX as u64 => {
                 let found = quoted(at.clone().word());
                 Err(Fault::new("E-obj-index", at.place(), found, format!("the index of a {of} that exists")).into())
             }
-            Err(CountFault::Overflow) => {
+            Ok(_) | Err(CountFault::Overflow) => {
                 let found = quoted(at.clone().word());
                 Err(Fault::new("E-obj-number", at.place(), found, format!("the index of a {of}")).into())
             }
@@ -405,11 +405,8 @@ impl<'e> Piece<'e> {
         let place = Place::Byte(at as u64);
         match word {
             b"curv" | b"curv2" | b"surf" => {
-                let fault = Fault::new("E-obj-freeform", place, quoted(word), "polygons, lines and points");
-                Err(fault
-                    .category(Category::Unsupported)
-                    .advice("free-form curves and surfaces are not read yet: export the file as polygons")
-                    .into())
+                // The whole text is looked at to say why.
+                Err(Fault::new("E-obj-freeform", place, quoted(word), "polygons, lines and points").into())
             }
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end"
             | b"con" | b"bzp" | b"bsp" | b"cdc" | b"cdp" | b"res" => {

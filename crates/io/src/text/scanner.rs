@@ -250,6 +250,12 @@ pub(crate) fn line_place(text: &[u8], place: Place) -> Place {
     }
 }
 
+/// Where a text ends: the line of its last byte, or the next one where that ends its line.
+pub(crate) fn end_place(text: &[u8]) -> Place {
+    let last = line_at(text, text.len());
+    Place::line(if matches!(text.last(), Some(b'\n' | b'\r')) { last + 1 } else { last })
+}
+
 /// A text without its byte order mark, within the limits of lines.
 ///
 /// # Errors
