@@ -4,16 +4,20 @@
 //! environment they are written anew instead.
 
 mod bench;
+mod between_formats;
 mod codes;
 mod collection;
 mod collection_obj;
 mod command_line;
 mod documents;
+#[path = "../fuzz/entry.rs"]
+mod entry;
 mod floors;
 mod harness;
 mod laws;
 mod malformed;
 mod malformed_obj;
+mod mutations;
 mod oracles;
 mod properties;
 mod regressions;

@@ -3,6 +3,7 @@
 //! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
+mod files;
 mod measure;
 mod tessellate;
 
@@ -41,16 +42,22 @@ struct Arguments {
 pub enum Task {
     /// The teapot's patches to triangles.
     Tessellate,
+    /// Mesh files of a million triangles (blob_1m.ply, .stl, .obj, .off, .glb) to meshes, from the disk.
+    Read,
+    /// The same mesh to every format, in memory.
+    Write,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 1] = [Self::Tessellate];
+    pub const ALL: [Self; 3] = [Self::Tessellate, Self::Read, Self::Write];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tessellate => "tessellate",
+            Self::Read => "read",
+            Self::Write => "write",
         }
     }
 }
@@ -84,7 +91,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
     let Arguments { task, data, runs, threads, tolerance, json: _ } = arguments;
     let setting = Setting { data, runs, tolerance };
     let work = || match task {
-        Task::Tessellate => tessellate::run(&setting),
+        Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
+        Task::Read => files::read_files(&setting),
+        Task::Write => files::write_files(&setting),
     };
     let outcome = match threads {
         None => work(),
@@ -94,19 +103,21 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         },
     };
     match outcome {
-        Ok(Outcome { input, times, figures }) => {
-            let mut line = json!({
-                "task": task.name(),
-                "input": input,
-                "runs": runs,
-                "threads": threads.map_or_else(rayon::current_num_threads, usize::from),
-                "wall_s": times.wall,
-                "cpu_s": times.cpu,
-            });
-            if let Some(object) = line.as_object_mut() {
-                object.extend(figures);
+        Ok(outcomes) => {
+            for Outcome { input, times, figures } in outcomes {
+                let mut line = json!({
+                    "task": task.name(),
+                    "input": input,
+                    "runs": runs,
+                    "threads": threads.map_or_else(rayon::current_num_threads, usize::from),
+                    "wall_s": times.wall,
+                    "cpu_s": times.cpu,
+                });
+                if let Some(object) = line.as_object_mut() {
+                    object.extend(figures);
+                }
+                let _ = writeln!(out, "{line}");
             }
-            let _ = writeln!(out, "{line}");
             0
         }
         Err(message) => {

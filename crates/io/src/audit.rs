@@ -11,6 +11,10 @@ use shapeloom_shape::{Geometry, Shape};
 use crate::cut::cut;
 use crate::{Fault, ReadError};
 
+/// What to do about positions that are not finite.
+pub(crate) const DROP_ADVICE: &str =
+    "repair the file, or leave such vertices out with the option drop_non_finite (--drop-non-finite)";
+
 /// Remarks on the faces of a mesh that name a vertex twice or whose corners lie on one line; `place` says where in the
 /// input a face is. Cost: one pass over the faces, parallel.
 pub(crate) fn degenerate_faces(
