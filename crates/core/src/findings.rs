@@ -38,15 +38,27 @@ impl Findings {
 
     /// Adds one observation; the message of the first with the same code is kept.
     pub fn push(&mut self, code: &'static str, severity: Severity, place: Place, message: impl Into<String>) {
+        self.push_many(code, severity, place, message, 1);
+    }
+
+    /// Adds as many observations as `count`, of which the place of the first is known.
+    pub fn push_many(
+        &mut self,
+        code: &'static str,
+        severity: Severity,
+        place: Place,
+        message: impl Into<String>,
+        count: u64,
+    ) {
         match self.0.iter_mut().find(|finding| finding.code == code) {
             Some(known) => {
-                known.count += 1;
+                known.count += count;
                 known.severity = known.severity.max(severity);
                 if known.places.len() < Self::PLACES_KEPT {
                     known.places.push(place);
                 }
             }
-            None => self.0.push(Finding { code, severity, message: message.into(), places: vec![place], count: 1 }),
+            None => self.0.push(Finding { code, severity, message: message.into(), places: vec![place], count }),
         }
     }
 

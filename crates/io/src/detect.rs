@@ -10,15 +10,14 @@ use crate::{FORMATS, Format, Sniff};
 ///
 /// A format's own mark decides before everything else. Then come formats whose content looks right, the one of the
 /// extension first, and at last the extension alone, so that a file whose first bytes are damaged is still refused by
-/// the right reader, in its words. A few thousand bytes are enough; more do no harm.
+/// the right reader, in its words. A few thousand bytes are enough for most formats; binary STL, which has no mark, is
+/// told without its extension only from the whole input.
 ///
 /// # Errors
 /// Neither the content nor the extension is known.
-pub fn detect(head: &[u8], file_name: Option<&str>) -> Result<&'static Format, DetectError> {
-    // Content heuristics look at every line that they get.
-    let head = &head[..head.len().min(1 << 16)];
+pub fn detect(input: &[u8], file_name: Option<&str>) -> Result<&'static Format, DetectError> {
     let named = file_name.and_then(extension).and_then(|word| by_extension(&word));
-    let sniffed = |wanted: Sniff| FORMATS.iter().filter(move |format| (format.sniff)(head) == wanted);
+    let sniffed = |wanted: Sniff| FORMATS.iter().filter(move |format| (format.sniff)(input) == wanted);
     if let Some(format) = sniffed(Sniff::Certain).next() {
         return Ok(format);
     }
@@ -26,7 +25,7 @@ pub fn detect(head: &[u8], file_name: Option<&str>) -> Result<&'static Format, D
     likely
         .or_else(|| sniffed(Sniff::Likely).next())
         .or(named)
-        .ok_or_else(|| DetectError::Unknown { head: excerpt(head), file_name: file_name.map(str::to_owned) })
+        .ok_or_else(|| DetectError::Unknown { head: excerpt(input), file_name: file_name.map(str::to_owned) })
 }
 
 /// The format of that id.
@@ -47,6 +46,11 @@ pub fn format_for_output(file_name: &str) -> Result<&'static Format, DetectError
         file_name: file_name.to_owned(),
         read_only: format.map(|format| format.id),
     })
+}
+
+/// The part of an input that content heuristics look at line by line.
+pub(crate) fn head(input: &[u8]) -> &[u8] {
+    &input[..input.len().min(1 << 16)]
 }
 
 fn by_extension(word: &str) -> Option<&'static Format> {

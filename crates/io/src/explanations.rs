@@ -76,6 +76,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-gltf-uri", "An embedded buffer is not base64 data."),
     ("E-gltf-version", "Only version 2.0 of glTF is read."),
+    ("E-read-elements", "There are more elements than 32 bits can tell apart. Cut the shape into parts."),
     ("E-read-format", "Files of this format are recognized and written, but not read yet."),
     ("E-read-io", "The input could not be read to its end."),
     ("E-read-size", "The input is longer than the reader's limits allow. Raise the limit if you trust it."),
@@ -124,6 +125,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
+    ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
 ];
 
 /// The explanation of a code of this crate.

@@ -152,7 +152,11 @@ pub struct Format {
     pub kinds: &'static [Kind],
     /// What it keeps beside positions and faces.
     pub keeps: &'static [Keeps],
-    /// What the first bytes say.
+    /// The fields of [`ReadOptions`](crate::ReadOptions) that the reader heeds beside those that all heed.
+    pub read_options: &'static [&'static str],
+    /// The fields of [`WriteOptions`](crate::WriteOptions) that the writer heeds.
+    pub write_options: &'static [&'static str],
+    /// What the input says, above all its first bytes. No more than a few thousand are looked at.
     pub sniff: fn(&[u8]) -> Sniff,
     /// The reader, if there is one.
     pub reads: Option<ReadFn>,

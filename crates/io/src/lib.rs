@@ -26,13 +26,16 @@
 
 pub mod text;
 
+mod audit;
 mod bpt;
 mod detect;
 mod explanations;
+mod faces;
 mod format;
 mod gltf;
 mod memory;
 mod obj;
+mod options;
 mod placed;
 mod ply;
 mod read;
@@ -47,8 +50,9 @@ mod write_error;
 pub use detect::{DetectError, detect, format_by_id, format_for_output};
 pub use explanations::{EXPLANATIONS, explanation};
 pub use format::{FORMATS, Format, Keeps, Precision, ReadFn, Sniff, WriteFn};
+pub use options::{Encoding, Instances, ReadOptions, WriteOptions};
 pub use read::{ReadContext, ReadShape, read, slurp};
 pub use read_error::{Fault, ReadError};
-pub use siblings::{SiblingError, SiblingName, Siblings};
+pub use siblings::{SiblingError, SiblingName, SiblingOutputs, Siblings};
 pub use write::{WriteContext, write};
 pub use write_error::WriteError;

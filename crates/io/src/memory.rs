@@ -35,6 +35,78 @@ impl<'e> Memory<'e> {
     }
 }
 
+/// A vector that reserves memory before it grows.
+#[derive(Debug)]
+pub(crate) struct Growing<T>(Vec<T>);
+
+impl<T> Default for Growing<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T> Growing<T> {
+    /// An empty vector with room for `count` elements that are known to be there, not merely claimed.
+    pub(crate) fn with_room(memory: &mut Memory<'_>, count: usize) -> Result<Self, OverBudget> {
+        memory.take(count, size_of::<T>())?;
+        Ok(Self(Vec::with_capacity(count)))
+    }
+
+    /// A vector whose memory was reserved elsewhere.
+    pub(crate) fn from_vec(elements: Vec<T>) -> Self {
+        Self(elements)
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, memory: &mut Memory<'_>, element: T) -> Result<(), OverBudget> {
+        if self.0.len() == self.0.capacity() {
+            self.grow(memory, 1)?;
+        }
+        self.0.push(element);
+        Ok(())
+    }
+
+    #[inline]
+    pub(crate) fn extend(&mut self, memory: &mut Memory<'_>, elements: &[T]) -> Result<(), OverBudget>
+    where
+        T: Copy,
+    {
+        if self.0.capacity() - self.0.len() < elements.len() {
+            self.grow(memory, elements.len())?;
+        }
+        self.0.extend_from_slice(elements);
+        Ok(())
+    }
+
+    #[cold]
+    fn grow(&mut self, memory: &mut Memory<'_>, more: usize) -> Result<(), OverBudget> {
+        let more = more.max(self.0.len()).max(64);
+        memory.take(more, size_of::<T>())?;
+        self.0.reserve_exact(more);
+        Ok(())
+    }
+
+    pub(crate) fn as_slice(&self) -> &[T] {
+        &self.0
+    }
+
+    pub(crate) fn as_mut_slice(&mut self) -> &mut [T] {
+        &mut self.0
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub(crate) fn into_vec(self) -> Vec<T> {
+        self.0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -51,5 +123,16 @@ mod tests {
         drop(memory);
         assert_eq!(exec.memory_taken(), 0);
         assert!(Memory::new(&exec).take(usize::MAX, 8).is_err());
+    }
+
+    #[test]
+    fn vectors_reserve_before_they_grow() {
+        let exec = Exec::default().with_memory(100_000);
+        let mut memory = Memory::new(&exec);
+        let mut numbers = Growing::default();
+        let fits = (0u64..).take_while(|&number| numbers.push(&mut memory, number).is_ok()).count();
+        assert!((4096..=12_500).contains(&fits), "{fits}");
+        assert_eq!(numbers.len(), fits);
+        assert!(exec.memory_taken() >= 8 * fits as u64);
     }
 }

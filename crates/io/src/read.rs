@@ -6,13 +6,15 @@ use std::sync::Arc;
 use shapeloom_core::{Category, Exec, Findings, Limits, Loss, Place};
 use shapeloom_shape::Shape;
 
-use crate::{Fault, Format, ReadError, Siblings};
+use crate::{Fault, Format, ReadError, ReadOptions, Siblings, audit};
 
 /// What a reader needs beside the bytes.
 #[derive(Clone, Default)]
 pub struct ReadContext {
     /// What it accepts.
     pub limits: Limits,
+    /// How files are read where there is a choice.
+    pub options: ReadOptions,
     /// How it runs: memory is reserved before it is allocated in proportion to the input, and cancelling is polled.
     pub exec: Exec,
     /// What errors call the input.
@@ -67,7 +69,11 @@ pub fn read(input: &[u8], format: &Format, context: &ReadContext) -> Result<Read
             return Err(too_long(context.limits.max_bytes).into());
         }
         context.exec.check()?;
-        reader(input, context)
+        let mut found = reader(input, context)?;
+        if context.options.drop_non_finite {
+            audit::drop_non_finite(&mut found.shape, &mut found.findings)?;
+        }
+        Ok(found)
     });
     result.map_err(|error| error.in_input(&context.name))
 }

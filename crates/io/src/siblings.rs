@@ -80,6 +80,15 @@ pub trait Siblings: Send + Sync {
     fn open(&self, name: &SiblingName, max_bytes: u64) -> Result<Vec<u8>, SiblingError>;
 }
 
+/// Takes the files that are written beside an output: material libraries.
+pub trait SiblingOutputs: Send + Sync {
+    /// Writes a file beside the output, or keeps it to be written with it.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    fn put(&self, name: &SiblingName, bytes: Vec<u8>) -> std::io::Result<()>;
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,17 +1,24 @@
 //! Writing.
 
 use std::io::Write;
+use std::sync::Arc;
 
 use shapeloom_core::{Exec, Report};
 use shapeloom_shape::Shape;
 
-use crate::{Format, WriteError};
+use crate::{Format, SiblingOutputs, WriteError, WriteOptions};
 
 /// What a writer needs beside the shape.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct WriteContext {
     /// How it runs: memory is reserved before it is allocated in proportion to the shape, and cancelling is polled.
     pub exec: Exec,
+    /// How files are written where there is a choice.
+    pub options: WriteOptions,
+    /// The file name of the output, from which files beside it get theirs; empty for a stream.
+    pub name: String,
+    /// Where files beside the output go; none for an output that stands alone: what they would hold is lost then.
+    pub siblings: Option<Arc<dyn SiblingOutputs>>,
 }
 
 /// Writes a shape as a file.
@@ -93,7 +100,7 @@ mod tests {
         }
         let flag = CancelFlag::default();
         flag.cancel();
-        let cancelled = WriteContext { exec: Exec::default().with_cancel(&flag) };
+        let cancelled = WriteContext { exec: Exec::default().with_cancel(&flag), ..WriteContext::default() };
         for format in FORMATS.iter().filter(|format| format.writes.is_some()) {
             let shape = Shape::new(if format.id == "bpt" { surface() } else { triangle() });
             let error = write(&shape, format, &WriteContext::default(), &mut Full).unwrap_err();

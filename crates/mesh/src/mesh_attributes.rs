@@ -1,6 +1,6 @@
 //! The attributes of a mesh.
 
-use crate::{Attributes, Domain};
+use crate::{AttributeError, Attributes, Domain};
 
 /// The attribute columns of a mesh's vertices, faces and wedges.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,6 +34,17 @@ impl MeshAttributes {
             Domain::Face => &mut self.face,
             Domain::Wedge => &mut self.wedge,
         }
+    }
+
+    /// Refuses attributes of other numbers of elements than these.
+    pub(crate) fn check_lengths(&self, others: &Self) -> Result<(), AttributeError> {
+        for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
+            let (found, expected) = (others.of(domain).len(), self.of(domain).len());
+            if found != expected {
+                return Err(AttributeError::Length { name: format!("every {domain} attribute"), found, expected });
+            }
+        }
+        Ok(())
     }
 
     /// The memory that the columns take, in bytes.

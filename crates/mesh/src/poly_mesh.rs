@@ -57,6 +57,22 @@ impl PolyMesh {
         Ok(Self { positions, starts, corners, attributes })
     }
 
+    /// A mesh with attributes.
+    ///
+    /// # Errors
+    /// As [`PolyMesh::try_new`], and for attributes of another number of elements.
+    pub fn with_attributes(
+        positions: Vec<DVec3>,
+        starts: Vec<u32>,
+        corners: Vec<u32>,
+        attributes: MeshAttributes,
+    ) -> Result<Self, MeshError> {
+        let mut mesh = Self::try_new(positions, starts, corners)?;
+        mesh.attributes.check_lengths(&attributes)?;
+        mesh.attributes = attributes;
+        Ok(mesh)
+    }
+
     /// A mesh from a list of faces.
     ///
     /// # Errors

@@ -48,14 +48,7 @@ impl TriMesh {
         attributes: MeshAttributes,
     ) -> Result<Self, MeshError> {
         let mut mesh = Self::try_new(positions, triangles)?;
-        for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
-            let (found, expected) = (attributes.of(domain).len(), mesh.attributes.of(domain).len());
-            if found != expected {
-                return Err(
-                    AttributeError::Length { name: format!("every {domain} attribute"), found, expected }.into()
-                );
-            }
-        }
+        mesh.attributes.check_lengths(&attributes)?;
         mesh.attributes = attributes;
         Ok(mesh)
     }

@@ -130,7 +130,7 @@ impl<'a> Delivery<'a> {
         let before = made.then(conversion.deviation);
         let strict = session.globals.strict;
         let mut staged = vec![stage(&self.target.output, self.target.force, |out| {
-            let report = write(&conversion.shape, self.format, &WriteContext { exec }, out)?;
+            let report = write(&conversion.shape, self.format, &WriteContext { exec, ..WriteContext::default() }, out)?;
             if strict {
                 check_strict(before.then(report.deviation), job.tolerance)?;
             }

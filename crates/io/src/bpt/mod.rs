@@ -25,13 +25,16 @@ pub(crate) const FORMAT: Format = Format {
     precision: Precision::F64,
     kinds: &[Kind::BezierSurface],
     keeps: &[Keeps::UpAxis],
+    read_options: &[],
+    write_options: &[],
     sniff,
     reads: Some(read::read),
     writes: Some(write::write),
 };
 
 /// A count alone on its line, two small counts on the next, three numbers on the third.
-fn sniff(head: &[u8]) -> Sniff {
+fn sniff(input: &[u8]) -> Sniff {
+    let head = crate::detect::head(input);
     let Ok(text) = Text::try_new(head, &Default::default()) else {
         return Sniff::No;
     };

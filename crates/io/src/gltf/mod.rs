@@ -64,6 +64,8 @@ pub(crate) const GLB: Format = Format {
     precision: Precision::F32,
     kinds: KINDS,
     keeps: KEEPS,
+    read_options: &[],
+    write_options: &[],
     sniff: |head| if head.starts_with(b"glTF") { Sniff::Certain } else { Sniff::No },
     reads: Some(read::read_glb),
     writes: Some(write::write_glb),
@@ -80,13 +82,16 @@ pub(crate) const GLTF: Format = Format {
     precision: Precision::F32,
     kinds: KINDS,
     keeps: KEEPS,
+    read_options: &[],
+    write_options: &[],
     sniff: sniff_json,
     reads: Some(read::read_gltf),
     writes: None,
 };
 
 /// An object that speaks of an asset.
-fn sniff_json(head: &[u8]) -> Sniff {
+fn sniff_json(input: &[u8]) -> Sniff {
+    let head = crate::detect::head(input);
     let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     let open = head.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{');
     if open && head.windows(7).any(|word| word == b"\"asset\"") { Sniff::Likely } else { Sniff::No }

@@ -125,7 +125,7 @@ fn scenes_come_back_and_stay_the_same_bits() {
 
 #[test]
 fn output_does_not_depend_on_threads() {
-    let alone = WriteContext { exec: Exec::default().with_threads(Threads::Sequential) };
+    let alone = WriteContext { exec: Exec::default().with_threads(Threads::Sequential), ..WriteContext::default() };
     let mut file = Vec::new();
     write(&scene(), format_by_id("glb").unwrap(), &alone, &mut file).unwrap();
     assert_eq!(file, to_glb(&scene()).unwrap().0);

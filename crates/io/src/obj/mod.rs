@@ -24,13 +24,16 @@ pub(crate) const FORMAT: Format = Format {
     precision: Precision::F64,
     kinds: &[Kind::PointCloud, Kind::Polyline, Kind::GeometricGraph, Kind::PolyMesh, Kind::TriMesh],
     keeps: &[Keeps::Normals, Keeps::Texcoords, Keeps::Colors, Keeps::Wedges, Keeps::Names, Keeps::Parts],
+    read_options: &[],
+    write_options: &[],
     sniff,
     reads: None,
     writes: Some(write::write),
 };
 
 /// Only lines that OBJ has, and a vertex among them. The last line may be cut off.
-fn sniff(head: &[u8]) -> Sniff {
+fn sniff(input: &[u8]) -> Sniff {
+    let head = crate::detect::head(input);
     const WORDS: [&[u8]; 14] =
         [b"v", b"vt", b"vn", b"vp", b"f", b"l", b"p", b"o", b"g", b"s", b"mtllib", b"usemtl", b"usemap", b"end"];
     let Ok(text) = Text::try_new(head, &Default::default()) else {

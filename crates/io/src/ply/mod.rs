@@ -28,6 +28,8 @@ pub(crate) const FORMAT: Format = Format {
     precision: Precision::F64,
     kinds: &[Kind::PointCloud, Kind::Polyline, Kind::GeometricGraph, Kind::PolyMesh, Kind::TriMesh],
     keeps: &[Keeps::Normals, Keeps::Texcoords, Keeps::Colors, Keeps::VertexColumns, Keeps::FaceColumns],
+    read_options: &[],
+    write_options: &[],
     sniff: |head| {
         if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") { Sniff::Certain } else { Sniff::No }
     },

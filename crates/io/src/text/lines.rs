@@ -19,9 +19,7 @@ impl<'a> Text<'a> {
     /// The input begins with the mark of UTF-16 or UTF-32.
     pub fn try_new(input: &'a [u8], limits: &Limits) -> Result<Self, Box<Fault>> {
         if input.starts_with(b"\xff\xfe") || input.starts_with(b"\xfe\xff") || input.starts_with(b"\0\0\xfe\xff") {
-            return Err(Fault::new("E-text-encoding", Place::Byte(0), "the mark of UTF-16 or UTF-32", "UTF-8 text")
-                .category(Category::Unsupported)
-                .advice("save the file as UTF-8"));
+            return Err(no_utf8("the mark of UTF-16 or UTF-32"));
         }
         let unmarked = input.strip_prefix(b"\xef\xbb\xbf");
         Ok(Self { bytes: unmarked.unwrap_or(input), max_line: limits.max_line, mark: unmarked.is_some() })
@@ -30,6 +28,11 @@ impl<'a> Text<'a> {
     /// Whether it began with a UTF-8 byte order mark.
     pub fn had_mark(&self) -> bool {
         self.mark
+    }
+
+    /// The bytes after the mark.
+    pub(crate) fn bytes(&self) -> &'a [u8] {
+        self.bytes
     }
 
     /// The lines in order.
@@ -41,6 +44,17 @@ impl<'a> Text<'a> {
     pub fn tokens(&self) -> Tokens<'a> {
         Tokens { lines: self.lines(), rest: &[], number: 0, column: 0 }
     }
+}
+
+pub(super) fn no_utf8(found: &'static str) -> Box<Fault> {
+    Fault::new("E-text-encoding", Place::Byte(0), found, "UTF-8 text")
+        .category(Category::Unsupported)
+        .advice("save the file as UTF-8")
+}
+
+pub(super) fn long_line(place: Place, bytes: usize, most: u64) -> Box<Fault> {
+    Fault::new("E-text-line", place, format!("{bytes} bytes"), format!("lines of at most {most}"))
+        .category(Category::OverLimit)
 }
 
 /// A line without its end.
@@ -79,9 +93,7 @@ impl<'a> Lines<'a> {
         let (bytes, rest) = self.rest.split_at(end);
         self.rest = rest.strip_prefix(b"\r\n").unwrap_or(rest.get(1..).unwrap_or(&[]));
         if bytes.len() as u64 > self.max_line {
-            let (found, most) = (format!("{} bytes", bytes.len()), self.max_line);
-            return Err(Fault::new("E-text-line", Place::line(self.number), found, format!("lines of at most {most}"))
-                .category(Category::OverLimit));
+            return Err(long_line(Place::line(self.number), bytes.len(), self.max_line));
         }
         Ok(Some(Line { number: self.number, bytes }))
     }

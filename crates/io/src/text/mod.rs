@@ -1,7 +1,12 @@
 //! Text as formats share it: lines and tokens with their places, numbers by a strict grammar.
 
+mod decimal;
 mod lines;
 mod numbers;
+mod pieces;
+mod scanner;
 
 pub use lines::{Line, Lines, Text, Token, Tokens, quoted};
 pub use numbers::{CountFault, NumberFault, parse_count, parse_number, shortest};
+pub(crate) use pieces::{never_joined, pieces};
+pub(crate) use scanner::{Scanner, in_lines, line_place, plain_text};

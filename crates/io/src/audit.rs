@@ -1,0 +1,245 @@
+//! What readers look for in every mesh: faces without area, positions that are not finite.
+
+use std::sync::Arc;
+
+use shapeloom_core::glam::DVec3;
+use shapeloom_core::parallel::{CHUNK, map_chunks};
+use shapeloom_core::{Exec, Findings, Place, Severity, Stop};
+use shapeloom_mesh::{MeshOrigins, Origins, PointCloud, PolyMesh, Polyline, TriMesh, carry};
+use shapeloom_shape::{Geometry, Shape};
+
+use crate::{Fault, ReadError};
+
+/// Remarks on the faces of a mesh that name a vertex twice or whose corners lie on one line; `place` says where in the
+/// input a face is. Cost: one pass over the faces, parallel.
+pub(crate) fn degenerate_faces(
+    geometry: &Geometry,
+    code: &'static str,
+    exec: &Exec,
+    findings: &mut Findings,
+    place: impl Fn(usize) -> Place,
+) -> Result<(), Stop> {
+    let (count, first) = match geometry {
+        Geometry::TriMesh(mesh) => find(exec, mesh.triangles().len(), |face| {
+            let [a, b, c] = mesh.triangles()[face];
+            a == b || b == c || c == a || on_one_line(&mesh.corners(face))
+        })?,
+        Geometry::PolyMesh(mesh) => find(exec, mesh.face_count(), |face| {
+            let corners = mesh.face(face);
+            repeats(corners) || {
+                let outline: Vec<DVec3> = mesh.outline(face).collect();
+                on_one_line(&outline)
+            }
+        })?,
+        _ => return Ok(()),
+    };
+    for (rank, face) in first.into_iter().enumerate() {
+        let message = format!("face {face} names a vertex twice or has no area; it was kept");
+        let seen = if rank == 0 { count - (Findings::PLACES_KEPT.min(count) - 1) } else { 1 };
+        // The places of the first ones; the rest are counted with the first.
+        findings.push_many(code, Severity::Warning, place(face), message, seen as u64);
+    }
+    Ok(())
+}
+
+/// How many faces are so, and the first few.
+fn find(exec: &Exec, faces: usize, is_so: impl Fn(usize) -> bool + Sync) -> Result<(usize, Vec<usize>), Stop> {
+    let parts = map_chunks(exec, faces, CHUNK, |range| {
+        let found = range.filter(|&face| is_so(face));
+        let mut first = Vec::new();
+        let mut count = 0;
+        for face in found {
+            count += 1;
+            if first.len() < Findings::PLACES_KEPT {
+                first.push(face);
+            }
+        }
+        Ok::<_, Stop>((count, first))
+    })?;
+    let count = parts.iter().map(|(count, _)| count).sum();
+    let first = parts.into_iter().flat_map(|(_, first)| first).take(Findings::PLACES_KEPT).collect();
+    Ok((count, first))
+}
+
+fn repeats(corners: &[u32]) -> bool {
+    match corners {
+        [a, b, c] => a == b || b == c || c == a,
+        [a, b, c, d] => a == b || a == c || a == d || b == c || b == d || c == d,
+        corners if corners.len() <= 16 => corners.iter().enumerate().any(|(i, corner)| corners[..i].contains(corner)),
+        corners => {
+            let mut sorted = corners.to_vec();
+            sorted.sort_unstable();
+            sorted.windows(2).any(|pair| pair[0] == pair[1])
+        }
+    }
+}
+
+/// Whether all points lie on one line or in one point, up to rounding of one product.
+fn on_one_line(points: &[DVec3]) -> bool {
+    let Some((&first, others)) = points.split_first() else {
+        return true;
+    };
+    if let [b, c] = *others {
+        // By far the most faces are triangles with an area.
+        let cross = (b - first).cross(c - first);
+        if cross.x != 0.0 || cross.y != 0.0 || cross.z != 0.0 {
+            return false;
+        }
+    }
+    // Against the corner that is farthest along an axis, in units in which it is one away: nothing underflows then.
+    let reach = |point: &DVec3| (*point - first).abs().max_element();
+    let Some(far) =
+        others.iter().copied().reduce(|best, point| if reach(&point) > reach(&best) { point } else { best })
+    else {
+        return true;
+    };
+    let size = reach(&far);
+    if size == 0.0 || !size.is_finite() {
+        return size == 0.0;
+    }
+    let along = (far - first) / size;
+    others.iter().all(|&point| along.cross((point - first) / size) == DVec3::ZERO)
+}
+
+/// Takes out every vertex whose position is not finite, with the faces and segments that use it.
+pub(crate) fn drop_non_finite(shape: &mut Shape, findings: &mut Findings) -> Result<(), ReadError> {
+    for index in 0..shape.parts.len() {
+        let geometry = Arc::clone(&shape.parts[index].geometry);
+        let Some((kept, vertices, faces)) = finite_part(&geometry)? else { continue };
+        let kept = Arc::new(kept);
+        // Instances stay instances.
+        for part in shape.parts.iter_mut().filter(|part| Arc::ptr_eq(&part.geometry, &geometry)) {
+            part.geometry = Arc::clone(&kept);
+        }
+        let message =
+            format!("left out {vertices} vertices that are not finite, and {faces} faces or segments of them");
+        findings.push("W-read-dropped", Severity::Warning, Place::element("part", index as u64), message);
+    }
+    Ok(())
+}
+
+type Kept = (Geometry, usize, usize);
+
+/// The finite part of a geometry, how many vertices and how many faces it lost; none if it is finite.
+fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
+    let Some(points) = crate::placed::points_of(geometry) else { return Ok(None) };
+    if points.iter().all(|point| point.is_finite()) {
+        return Ok(None);
+    }
+    let wrong = |error: String| Fault::new("E-read-elements", Place::Whole, error, "a mesh");
+    let kept: Vec<u32> = (0..points.len() as u32).filter(|&vertex| points[vertex as usize].is_finite()).collect();
+    let lost = points.len() - kept.len();
+    let positions: Vec<DVec3> = kept.iter().map(|&vertex| points[vertex as usize]).collect();
+    let mut renumbered = vec![u32::MAX; points.len()];
+    for (new, &old) in kept.iter().enumerate() {
+        renumbered[old as usize] = new as u32;
+    }
+    let whole = |corners: &[u32]| corners.iter().all(|&corner| renumbered[corner as usize] != u32::MAX);
+    Ok(Some(match geometry {
+        Geometry::TriMesh(mesh) => {
+            let faces: Vec<u32> =
+                (0..mesh.triangles().len() as u32).filter(|&face| whole(&mesh.triangles()[face as usize])).collect();
+            let wedges = faces.iter().flat_map(|&face| 3 * face..3 * face + 3).collect();
+            let triangles: Vec<[u32; 3]> = faces
+                .iter()
+                .map(|&face| mesh.triangles()[face as usize].map(|corner| renumbered[corner as usize]))
+                .collect();
+            let lost_faces = mesh.triangles().len() - faces.len();
+            let origins = origins(kept, faces, wedges);
+            let (attributes, _) = carry(mesh.attributes(), &origins);
+            let mesh = TriMesh::with_attributes(positions, triangles, attributes);
+            (mesh.map_err(|error| wrong(error.to_string()))?.into(), lost, lost_faces)
+        }
+        Geometry::PolyMesh(mesh) => {
+            let faces: Vec<u32> =
+                (0..mesh.face_count() as u32).filter(|&face| whole(mesh.face(face as usize))).collect();
+            let wedges: Vec<u32> =
+                faces.iter().flat_map(|&face| mesh.wedges(face as usize)).map(|wedge| wedge as u32).collect();
+            let mut starts = vec![0];
+            let mut corners = Vec::with_capacity(wedges.len());
+            for &face in &faces {
+                corners.extend(mesh.face(face as usize).iter().map(|&corner| renumbered[corner as usize]));
+                starts.push(corners.len() as u32);
+            }
+            let lost_faces = mesh.face_count() - faces.len();
+            let (attributes, _) = carry(mesh.attributes(), &origins(kept, faces, wedges));
+            let mesh = PolyMesh::with_attributes(positions, starts, corners, attributes);
+            (mesh.map_err(|error| wrong(error.to_string()))?.into(), lost, lost_faces)
+        }
+        Geometry::PointCloud(cloud) => {
+            let mut finite = PointCloud::new(positions);
+            for column in cloud.attributes() {
+                finite.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+            }
+            (finite.into(), lost, 0)
+        }
+        Geometry::Polyline(line) => {
+            let mut finite = Polyline::new(positions, line.is_closed());
+            for column in line.attributes() {
+                finite.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+            }
+            (finite.into(), lost, lost)
+        }
+        _ => return Ok(None),
+    }))
+}
+
+fn origins(vertices: Vec<u32>, faces: Vec<u32>, wedges: Vec<u32>) -> MeshOrigins {
+    MeshOrigins { vertex: Origins::Copies(vertices), face: Origins::Copies(faces), wedge: Origins::Copies(wedges) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shapeloom_mesh::{Column, Domain};
+    use shapeloom_shape::Part;
+
+    #[test]
+    fn faces_without_area_are_told_from_thin_ones() {
+        let tiny = 1e-200;
+        assert!(!on_one_line(&[DVec3::ZERO, DVec3::X * tiny, DVec3::Y * tiny]));
+        assert!(on_one_line(&[DVec3::ZERO, DVec3::X * tiny, DVec3::X * 2.0 * tiny]));
+        assert!(on_one_line(&[DVec3::ONE; 3]));
+        // A figure of eight has no area by its sum, but is no line.
+        assert!(!on_one_line(&[DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::X, DVec3::Y]));
+        assert!(on_one_line(&[0.0, 1.0, 2.0, 3.0].map(|t| DVec3::new(t, t, t))));
+        assert!(!on_one_line(&[DVec3::ZERO, DVec3::X * 1e300, DVec3::new(1e300, 1.0, 0.0)]));
+        assert!(repeats(&[1, 2, 3, 4, 1]) && !repeats(&[1, 2, 3, 4, 5]));
+        let long: Vec<u32> = (0..40).collect();
+        assert!(!repeats(&long) && repeats(&[&long[..], &[7]].concat()));
+    }
+
+    #[test]
+    fn degenerate_faces_are_counted_and_the_first_are_placed() {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mut triangles = vec![[0, 1, 2]];
+        triangles.extend([[0, 1, 1]; 40]);
+        let mesh = TriMesh::try_new(positions, triangles).unwrap().into();
+        let mut findings = Findings::default();
+        let place = |face: usize| Place::line(100 + face as u64);
+        degenerate_faces(&mesh, "W-test", &Exec::default(), &mut findings, place).unwrap();
+        let only = findings.iter().next().unwrap();
+        assert_eq!((only.count, only.places.len(), &only.places[0]), (40, 16, &Place::line(101)));
+    }
+
+    #[test]
+    fn dropping_keeps_what_is_finite_with_its_attributes() {
+        let positions = vec![DVec3::ZERO, DVec3::NAN, DVec3::X, DVec3::Y, DVec3::ONE];
+        let mut mesh = PolyMesh::from_faces(positions, &[vec![0, 1, 2], vec![0, 2, 4, 3]]).unwrap();
+        mesh.insert_attribute(Domain::Vertex, Column::labels("v", vec![0, 1, 2, 3, 4])).unwrap();
+        mesh.insert_attribute(Domain::Face, Column::labels("f", vec![7, 8])).unwrap();
+        mesh.insert_attribute(Domain::Wedge, Column::labels("w", (0..7).collect())).unwrap();
+        let part = Part::new(mesh);
+        let mut shape = Shape { parts: vec![part.clone(), part], ..Shape::default() };
+        let mut findings = Findings::default();
+        drop_non_finite(&mut shape, &mut findings).unwrap();
+        assert!(Arc::ptr_eq(&shape.parts[0].geometry, &shape.parts[1].geometry));
+        let Geometry::PolyMesh(mesh) = &*shape.parts[0].geometry else { panic!("polygons") };
+        assert_eq!((mesh.face_count(), mesh.face(0)), (1, &[0, 1, 3, 2][..]));
+        let labels = |domain, name| mesh.attribute(domain, name).unwrap().values().clone();
+        assert_eq!(labels(Domain::Vertex, "v"), shapeloom_mesh::Values::U32(vec![0, 2, 3, 4]));
+        assert_eq!(labels(Domain::Face, "f"), shapeloom_mesh::Values::U32(vec![8]));
+        assert_eq!(labels(Domain::Wedge, "w"), shapeloom_mesh::Values::U32(vec![3, 4, 5, 6]));
+        assert_eq!(findings.iter().next().unwrap().code, "W-read-dropped");
+    }
+}
