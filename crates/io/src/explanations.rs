@@ -56,10 +56,19 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "E-gltf-extension",
         "The file requires an extension that is not read, so that it cannot be understood without it.",
     ),
-    ("E-gltf-feature", "The file uses a part of glTF that is not read yet: sparse accessors or compressed data."),
+    ("E-gltf-feature", "The file uses a part of glTF that is not read: compressed data."),
+    (
+        "E-gltf-finite",
+        "A position is infinite or not a number. Repair the file, or read it with the option drop_non_finite, which \
+     leaves out such vertices with the faces that use them.",
+    ),
     ("E-gltf-index", "An index of a primitive names a vertex that does not exist."),
     ("E-gltf-json", "The document is not valid JSON. The message names the first place at fault."),
-    ("E-gltf-limit", "The file has more elements than the reader's limits allow."),
+    (
+        "E-gltf-limit",
+        "The file has more elements than the reader's limits allow, or claims very many that are nowhere in it and \
+     would all be zeros.",
+    ),
     ("E-gltf-mesh", "The vertices, indices and attributes of a primitive make no mesh."),
     ("E-gltf-missing", "A member that glTF requires is absent."),
     ("E-gltf-mode", "The mode of a primitive is a number from 0, points, to 6, a fan of triangles."),
@@ -69,6 +78,11 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
      instances share a mesh, not a node.",
     ),
     ("E-gltf-reference", "A number names an element of a list that is not there."),
+    (
+        "E-gltf-sparse",
+        "The indices of a sparse accessor must strictly rise and stay below its count. The program that wrote the file \
+     did not sort them.",
+    ),
     (
         "E-gltf-type",
         "A value has another type than glTF gives it: a string for a number, VEC2 for positions, floating \
@@ -118,8 +132,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-glb-single", "glTF stores attributes in single precision, about seven digits."),
     ("W-glb-trailing", "The file is longer than its header says; what follows was not read."),
     ("W-glb-up", "glTF has y up. The up axis of the shape is not known, so it was written without turning it."),
-    ("W-gltf-corners", "The number of indices of a primitive is no multiple of three; the last ones make no triangle."),
-    ("W-gltf-finite", "A position is infinite or not a number. It was kept: repair the mesh before using it."),
+    (
+        "W-gltf-corners",
+        "The number of indices of a primitive does not go up in triangles, or segments; the last ones make none.",
+    ),
     ("W-gltf-mark", "The document begins with a byte order mark, which glTF forbids."),
     ("W-gltf-matrix", "The last row of a node's matrix must be 0 0 0 1, and was taken as that."),
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),

@@ -123,7 +123,7 @@ fn refuse_cycles(parents: &[usize]) -> Result<(), Box<Fault>> {
                 around = parents[around];
             }
             let fault = Fault::new("E-gltf-cycle", Place::Whole, "a node that is below itself", "a tree of nodes");
-            return Err(fault.within(format!("nodes[{first}]")));
+            return Err(fault.within(format!("/nodes/{first}")));
         }
     }
     Ok(())
@@ -135,7 +135,7 @@ fn roots(document: &At<'_>, parents: &[usize]) -> Result<Vec<usize>, Box<Fault>>
         return Ok((0..parents.len()).filter(|&node| parents[node] == NO_PARENT).collect());
     }
     let first = Value::from(0);
-    let index = document.get("scene")?.unwrap_or(At { value: &first, path: "scene".into() });
+    let index = document.get("scene")?.unwrap_or(At { value: &first, path: "/scene".into() });
     let scene = document.element("scenes", &index)?;
     let Some(list) = scene.get("nodes")? else {
         return Ok(Vec::new());
@@ -206,7 +206,7 @@ mod tests {
             {"mesh": 0, "rotation": [0.0, 0.0, 1.0, 0.0], "translation": [3.0, 0.0, 0.0]}
         ]});
         let placed = walk(&document, &ReadContext::default()).unwrap();
-        assert_eq!(placed.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>(), ["nodes[2]", "nodes[1]"]);
+        assert_eq!(placed.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>(), ["/nodes/2", "/nodes/1"]);
         // Half a turn about z, then 3 along x, then twice as large, then 1 along x.
         assert_eq!(placed[0].1.point(DVec3::X), DVec3::new(5.0, 0.0, 0.0));
         assert_eq!(placed[1].1.point(DVec3::X), DVec3::new(3.0, 0.0, 0.0));
@@ -220,15 +220,15 @@ mod tests {
             (fault.code, fault.within.unwrap())
         };
         let cycle = json!({"nodes": [{}, {"children": [3]}, {"children": [1]}, {"children": [2]}]});
-        assert_eq!(fault(cycle), ("E-gltf-cycle", "nodes[1]".into()));
+        assert_eq!(fault(cycle), ("E-gltf-cycle", "/nodes/1".into()));
         let own = json!({"nodes": [{"children": [0]}]});
-        assert_eq!(fault(own), ("E-gltf-cycle", "nodes[0]".into()));
+        assert_eq!(fault(own), ("E-gltf-cycle", "/nodes/0".into()));
         let shared = json!({"nodes": [{"children": [2]}, {"children": [2]}, {}]});
-        assert_eq!(fault(shared), ("E-gltf-parents", "nodes[2]".into()));
+        assert_eq!(fault(shared), ("E-gltf-parents", "/nodes/2".into()));
         let twice = json!({"scenes": [{"nodes": [0, 1]}], "nodes": [{"children": [1]}, {}]});
-        assert_eq!(fault(twice), ("E-gltf-parents", "nodes[1]".into()));
+        assert_eq!(fault(twice), ("E-gltf-parents", "/nodes/1".into()));
         let outside = json!({"nodes": [{"children": [9]}]});
-        assert_eq!(fault(outside), ("E-gltf-reference", "nodes[0].children[0]".into()));
+        assert_eq!(fault(outside), ("E-gltf-reference", "/nodes/0/children/0".into()));
     }
 
     #[test]
