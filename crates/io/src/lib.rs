@@ -28,6 +28,8 @@ pub mod text;
 
 mod audit;
 mod bpt;
+mod color;
+mod cut;
 mod detect;
 mod explanations;
 mod faces;

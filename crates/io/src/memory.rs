@@ -86,6 +86,11 @@ impl<T> Growing<T> {
         Ok(())
     }
 
+    /// Forgets all but the first elements; the memory stays.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.0.truncate(count);
+    }
+
     pub(crate) fn as_slice(&self) -> &[T] {
         &self.0
     }

@@ -9,8 +9,8 @@ use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, TEXCOORD, Values};
 use shapeloom_shape::{Geometry, Part, Shape};
 
 use super::FORMAT;
+use crate::color::srgb;
 use crate::placed::{Losses, columns_of, frame_losses, placed_part, points_of};
-use crate::ply::srgb;
 use crate::sink::Sink;
 use crate::text::shortest;
 use crate::{WriteContext, WriteError};

@@ -12,7 +12,6 @@ mod properties;
 mod tests;
 mod write;
 
-pub(crate) use properties::srgb;
 use shapeloom_shape::Kind;
 
 use crate::{Format, Keeps, Precision, Sniff};

@@ -159,6 +159,26 @@ impl<'a> Scanner<'a> {
         Ok(value)
     }
 
+    /// A whole number that may be negative and need not end its word: its size and whether it is negative. Passes over
+    /// it.
+    ///
+    /// # Errors
+    /// No digit follows, or more than 19; it stands where it stood.
+    #[inline]
+    pub(crate) fn signed_part(&mut self) -> Result<(u64, bool), CountFault> {
+        let negative = self.peek() == Some(b'-');
+        let first = self.at + usize::from(negative);
+        let (value, end) = digits(self.text, first, 0);
+        match end - first {
+            0 => Err(CountFault::Syntax),
+            1..=19 => {
+                self.at = end;
+                Ok((value, negative))
+            }
+            _ => Err(CountFault::Overflow),
+        }
+    }
+
     #[inline]
     fn ends_word(&self, taken: usize) -> bool {
         match self.text.get(self.at + taken) {
