@@ -74,8 +74,8 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-gltf-mode", "The mode of a primitive is a number from 0, points, to 6, a fan of triangles."),
     (
         "E-gltf-parents",
-        "A node has two parents, or the scene reaches it twice. The nodes of a scene must be a tree; \
-     instances share a mesh, not a node.",
+        "The scene reaches a node twice in the same place. The nodes of a scene must be a tree; instances share a mesh, \
+     not a node.",
     ),
     ("E-gltf-reference", "A number names an element of a list that is not there."),
     (
@@ -138,6 +138,11 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-gltf-mark", "The document begins with a byte order mark, which glTF forbids."),
     ("W-gltf-matrix", "The last row of a node's matrix must be 0 0 0 1, and was taken as that."),
+    (
+        "W-gltf-parents",
+        "A node has several parents, which glTF forbids: nodes must be a tree. Each way to it puts it somewhere else, so \
+     that it was read as instances.",
+    ),
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
