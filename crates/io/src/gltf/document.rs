@@ -115,14 +115,6 @@ impl Builder<'_> {
         let baked = baked.then(|| Part { placement: Affine::IDENTITY, geometry: part.placed(), ..part.clone() });
         let part = baked.as_ref().unwrap_or(part);
         let key = Arc::as_ptr(&part.geometry);
-        // A baked geometry is this part's alone; it dies with this call, and its address may come again.
-        let forget = |builder: &mut Self| {
-            builder.stored.remove(&key);
-            builder.mesh_of.remove(&(key, material));
-        };
-        if baked.is_some() {
-            forget(self);
-        }
         if !self.stored.contains_key(&key) {
             let stored = store(self, index, part)?;
             self.stored.insert(key, stored);
@@ -146,8 +138,10 @@ impl Builder<'_> {
             };
             mesh = number.into();
         }
+        // A baked geometry is this part's alone; it may die with this call, and its address may come again.
         if baked.is_some() {
-            forget(self);
+            self.stored.remove(&key);
+            self.mesh_of.remove(&(key, material));
         }
         let name = if part.name.is_empty() { Value::Null } else { part.name.as_str().into() };
         let (mut translation, mut matrix) = (Value::Null, Value::Null);

@@ -275,6 +275,8 @@ mod tests {
         assert_eq!(fault(both), ("E-gltf-parents", "/nodes/1".into()));
         let far = json!({"nodes": [{"children": [1]}, {"children": [2, 4]}, {"children": [3]}, {"children": [1]}, {}]});
         assert_eq!(fault(far), ("E-gltf-cycle", "/nodes/1".into()));
+        let entered = json!({"nodes": [{"children": [3]}, {"children": [2]}, {"children": [3]}, {"children": [1]}]});
+        assert_eq!(fault(entered), ("E-gltf-cycle", "/nodes/1".into()));
         let outside = json!({"nodes": [{"children": [9]}]});
         assert_eq!(fault(outside), ("E-gltf-reference", "/nodes/0/children/0".into()));
     }

@@ -14,8 +14,7 @@ const JSON_CHUNK: u32 = u32::from_le_bytes(*b"JSON");
 const BIN_CHUNK: u32 = u32::from_le_bytes(*b"BIN\0");
 
 pub(super) fn write_glb(shape: &Shape, context: &WriteContext, out: &mut dyn Write) -> Result<Report, WriteError> {
-    // Split vertices and attributes beside the bytes of the buffer, once each.
-    let _memory = context.exec.reserve(written_bytes(shape, context).saturating_mul(2))?;
+    let _memory = context.exec.reserve(working_bytes(shape, context))?;
     let Document { members, bytes, mut report } = document(shape, context, &GLB, flatten(context))?;
     let json = with_buffer(&members.to_string(), bytes.len(), "");
     let total = file_length(json.len() as u64, bytes.len() as u64)?;
@@ -42,7 +41,7 @@ pub(super) fn write_glb(shape: &Shape, context: &WriteContext, out: &mut dyn Wri
 /// The same document as JSON that holds its buffer in base64.
 pub(super) fn write_gltf(shape: &Shape, context: &WriteContext, out: &mut dyn Write) -> Result<Report, WriteError> {
     const MARK: char = '\n';
-    let _memory = context.exec.reserve(written_bytes(shape, context).saturating_mul(2))?;
+    let _memory = context.exec.reserve(working_bytes(shape, context))?;
     let Document { members, bytes, mut report } = document(shape, context, &GLTF, flatten(context))?;
     // JSON escapes line ends in its strings, so that there is no other.
     let json = with_buffer(&members.to_string(), bytes.len(), "data:application/octet-stream;base64,\n");
@@ -66,12 +65,14 @@ fn flatten(context: &WriteContext) -> bool {
     context.options.instances == Instances::Flatten
 }
 
-/// About the bytes of the file's buffer.
-fn written_bytes(shape: &Shape, context: &WriteContext) -> u64 {
-    if flatten(context) {
-        return shape.parts.iter().map(|part| part.geometry.memory_bytes() as u64).fold(0, u64::saturating_add);
-    }
-    shape.memory_bytes() as u64
+/// About the bytes of the file's buffer, and beside it split vertices and those of each material.
+fn working_bytes(shape: &Shape, context: &WriteContext) -> u64 {
+    let written = if flatten(context) {
+        shape.parts.iter().map(|part| part.geometry.memory_bytes() as u64).fold(0, u64::saturating_add)
+    } else {
+        shape.memory_bytes() as u64
+    };
+    written.saturating_mul(3)
 }
 
 /// A document with its one buffer; glTF has no buffers without bytes.

@@ -368,6 +368,8 @@ fn every_fault_of_a_document_has_its_path() {
     }
     let error = document(|document| document["accessors"][0]["byteOffset"] = json!(2)).unwrap_err();
     assert_eq!(error.code(), "E-gltf-bounds");
+    let error = document(|document| document["bufferViews"][0]["byteStride"] = json!(11)).unwrap_err();
+    assert_eq!((error.code(), error.fault().unwrap().within.as_deref()), ("E-gltf-bounds", Some("/accessors/0")));
     let error = document(|document| document["meshes"][0]["primitives"][0]["mode"] = json!(7)).unwrap_err();
     assert_eq!(error.code(), "E-gltf-mode");
     let error = document(|document| document["extensionsRequired"] = json!(["EXT_no"])).unwrap_err();

@@ -102,9 +102,10 @@ fn lists_that_do_not_rise_or_leave_the_accessor_are_refused() {
         let found = fault(indices, json!({"bufferView": 1, "byteOffset": offset, "componentType": 5121}));
         assert_eq!(found, ("E-gltf-sparse", "/accessors/0/sparse".into()));
     }
-    // Nine is no element of three.
+    // Nine is no element of three, and neither is two of two.
     let large = json!({"bufferView": 1, "byteOffset": 15, "componentType": 5121});
     assert_eq!(fault(indices, large), ("E-gltf-sparse", "/accessors/0/sparse".into()));
+    assert_eq!(fault("/accessors/0/count", json!(2)), ("E-gltf-sparse", "/accessors/0/sparse".into()));
     for count in [json!(0), json!(4), json!(u64::MAX)] {
         assert_eq!(fault("/accessors/0/sparse/count", count), ("E-gltf-count", "/accessors/0/sparse/count".into()));
     }
@@ -161,4 +162,44 @@ fn positions_that_are_not_finite_are_named_or_dropped() {
     let text = document(poison).to_string();
     let read = read(text.as_bytes(), format_by_id("gltf").unwrap(), &context).unwrap();
     assert_eq!((mesh(&read.shape, 0).positions().len(), mesh(&read.shape, 0).triangles().len()), (2, 0));
+}
+
+#[test]
+fn every_element_of_a_long_list_is_found() {
+    let indices: Vec<u8> = (0..120).filter(|i| i % 3 != 1 && i % 7 != 2).collect();
+    let values = indices.iter().flat_map(|&index| [f32::from(index) + 0.5, 0.0, 0.0]).flat_map(f32::to_le_bytes);
+    let bytes: Vec<u8> = values.chain(indices.iter().copied()).collect();
+    let mut encoded = Vec::new();
+    base64::encode(&bytes, &mut encoded).unwrap();
+    let encoded = String::from_utf8(encoded).unwrap();
+    let shape = attempt(|document| {
+        document["meshes"][0]["primitives"][0] = json!({"attributes": {"POSITION": 0}, "mode": 0});
+        document["accessors"] = json!([{"componentType": 5126, "count": 120, "type": "VEC3", "sparse": {
+            "count": indices.len(),
+            "indices": {"bufferView": 0, "byteOffset": 12 * indices.len(), "componentType": 5121},
+            "values": {"bufferView": 0}
+        }}]);
+        document["bufferViews"] = json!([{"buffer": 0, "byteLength": bytes.len()}]);
+        let uri = format!("data:application/octet-stream;base64,{encoded}");
+        document["buffers"][0] = json!({"byteLength": bytes.len(), "uri": uri});
+    });
+    let shape = shape.unwrap().shape;
+    let points = crate::placed::points_of(&shape.parts[0].geometry).unwrap();
+    let wanted = (0..120u8).map(|i| if indices.contains(&i) { f64::from(i) + 0.5 } else { 0.0 });
+    assert_eq!(points.iter().map(|point| point.x).collect::<Vec<_>>(), wanted.collect::<Vec<_>>());
+}
+
+#[test]
+fn a_position_of_a_binary_file_is_named_by_its_byte() {
+    let (mut file, _) = super::to_glb(&super::scene()).unwrap();
+    let whole = super::from_glb(&file).shape;
+    // Point 3 of the line, found by its bytes.
+    let point = crate::placed::points_of(&whole.parts[2].geometry).unwrap()[3].as_vec3();
+    let bytes: Vec<u8> = point.to_array().into_iter().flat_map(f32::to_le_bytes).collect();
+    let at = file.windows(12).position(|window| window == bytes).unwrap();
+    file[at + 8..at + 12].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let error = read(&file, format_by_id("glb").unwrap(), &ReadContext::default()).unwrap_err();
+    let fault = error.fault().unwrap();
+    assert_eq!((fault.code, &fault.place), ("E-gltf-finite", &Place::Byte(at as u64)), "{error}");
+    assert!(fault.found.contains("as element 3, at byte "), "{error}");
 }
