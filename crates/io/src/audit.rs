@@ -131,6 +131,8 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
     let finite = |vertex: &u32| points[*vertex as usize].is_finite();
     let kept: Vec<u32> = (0..points.len() as u32).filter(finite).collect();
     let lost = points.len() - kept.len();
+    let mut new_of_old = vec![u32::MAX; points.len()];
+    kept.iter().enumerate().for_each(|(new, &old)| new_of_old[old as usize] = new as u32);
     let gathered = || kept.iter().map(|&vertex| points[vertex as usize]).collect();
     let (rest, lost_faces) = match geometry {
         Geometry::PointCloud(cloud) => {
@@ -151,8 +153,6 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
             let edges: Vec<u32> = (0..graph.edges().len() as u32)
                 .filter(|&edge| graph.edges()[edge as usize].iter().all(finite))
                 .collect();
-            let mut new_of_old = vec![u32::MAX; points.len()];
-            kept.iter().enumerate().for_each(|(new, &old)| new_of_old[old as usize] = new as u32);
             let ends = |&edge: &u32| graph.edges()[edge as usize].map(|end| new_of_old[end as usize]);
             let rest = GeometricGraph::try_new(gathered(), edges.iter().map(ends).collect());
             let mut rest = rest.map_err(|error| wrong(error.to_string()))?;
@@ -170,13 +170,13 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
             let whole = |face: &u32| mesh.triangles()[*face as usize].iter().all(finite);
             let faces: Vec<u32> = (0..mesh.triangles().len() as u32).filter(whole).collect();
             let lost_faces = mesh.triangles().len() - faces.len();
-            (cut(geometry, kept, faces).map_err(|error| wrong(error.to_string()))?, lost_faces)
+            (cut(geometry, kept, faces, &new_of_old).map_err(|error| wrong(error.to_string()))?, lost_faces)
         }
         Geometry::PolyMesh(mesh) => {
             let whole = |face: &u32| mesh.face(*face as usize).iter().all(finite);
             let faces: Vec<u32> = (0..mesh.face_count() as u32).filter(whole).collect();
             let lost_faces = mesh.face_count() - faces.len();
-            (cut(geometry, kept, faces).map_err(|error| wrong(error.to_string()))?, lost_faces)
+            (cut(geometry, kept, faces, &new_of_old).map_err(|error| wrong(error.to_string()))?, lost_faces)
         }
         _ => return Ok(None),
     };

@@ -4,23 +4,21 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{MeshError, MeshOrigins, Origins, PolyMesh, TriMesh, carry};
 use shapeloom_shape::Geometry;
 
-/// The mesh of some vertices and faces of another, in their order, with all attributes; none of other geometries. Faces
-/// must use none but these vertices. Cost: linear in the size of the whole mesh.
+/// The mesh of some vertices and faces of another, in their order, with all attributes; none of other geometries.
+/// `new_of_old` says for each kept vertex which of `vertices` it is. Cost: linear in what is kept.
 ///
 /// # Errors
 /// A face with a vertex that is not kept.
-pub(crate) fn cut(geometry: &Geometry, vertices: Vec<u32>, faces: Vec<u32>) -> Result<Option<Geometry>, MeshError> {
-    let renumbered = |count: usize| {
-        let mut new_of_old = vec![u32::MAX; count];
-        for (new, &old) in vertices.iter().enumerate() {
-            new_of_old[old as usize] = new as u32;
-        }
-        new_of_old
-    };
+pub(crate) fn cut(
+    geometry: &Geometry,
+    vertices: Vec<u32>,
+    faces: Vec<u32>,
+    new_of_old: &[u32],
+) -> Result<Option<Geometry>, MeshError> {
     let gather = |points: &[DVec3]| -> Vec<DVec3> { vertices.iter().map(|&vertex| points[vertex as usize]).collect() };
     Ok(match geometry {
         Geometry::TriMesh(mesh) => {
-            let (positions, new_of_old) = (gather(mesh.positions()), renumbered(mesh.positions().len()));
+            let positions = gather(mesh.positions());
             let corners = |&face: &u32| mesh.triangles()[face as usize].map(|corner| new_of_old[corner as usize]);
             let triangles = faces.iter().map(corners).collect();
             let wedges = faces.iter().flat_map(|&face| 3 * face..3 * face + 3).collect();
@@ -28,7 +26,7 @@ pub(crate) fn cut(geometry: &Geometry, vertices: Vec<u32>, faces: Vec<u32>) -> R
             Some(TriMesh::with_attributes(positions, triangles, attributes)?.into())
         }
         Geometry::PolyMesh(mesh) => {
-            let (positions, new_of_old) = (gather(mesh.positions()), renumbered(mesh.positions().len()));
+            let positions = gather(mesh.positions());
             let mut starts = Vec::with_capacity(faces.len() + 1);
             starts.push(0);
             let mut wedges = Vec::new();

@@ -110,7 +110,7 @@ fn too_long(max_bytes: u64) -> Box<Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FORMATS, format_by_id};
+    use crate::FORMATS;
     use shapeloom_core::{CancelFlag, Diagnostic, Stop};
 
     #[test]
@@ -144,7 +144,8 @@ mod tests {
 
     #[test]
     fn formats_without_a_reader_say_so() {
-        let error = read(b"v 0 0 0", format_by_id("obj").unwrap(), &ReadContext::named("a.obj")).unwrap_err();
+        let error =
+            read(b"v 0 0 0", &Format { reads: None, ..crate::obj::FORMAT }, &ReadContext::named("a.obj")).unwrap_err();
         assert_eq!(error.category(), Category::Unsupported);
         assert!(error.to_string().starts_with("a.obj: found a Wavefront OBJ file"), "{error}");
     }

@@ -240,12 +240,20 @@ pub(crate) fn in_lines(text: &[u8], mut fault: Box<Fault>) -> Box<Fault> {
     fault
 }
 
-/// An offset made a line of its text; other places stay.
+/// An offset made a line of its text; other places stay, and so does an offset where there is no text.
 pub(crate) fn line_place(text: &[u8], place: Place) -> Place {
     match place {
-        Place::Byte(offset) => Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX))),
+        Place::Byte(offset) if !text.is_empty() => {
+            Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX)))
+        }
         place => place,
     }
+}
+
+/// Where a text ends: the line of its last byte, or the next one where that ends its line.
+pub(crate) fn end_place(text: &[u8]) -> Place {
+    let last = line_at(text, text.len());
+    Place::line(if matches!(text.last(), Some(b'\n' | b'\r')) { last + 1 } else { last })
 }
 
 /// A text without its byte order mark, within the limits of lines.

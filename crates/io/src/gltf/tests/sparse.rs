@@ -203,3 +203,37 @@ fn a_position_of_a_binary_file_is_named_by_its_byte() {
     assert_eq!((fault.code, &fault.place), ("E-gltf-finite", &Place::Byte(at as u64)), "{error}");
     assert!(fault.found.contains("as element 3, at byte "), "{error}");
 }
+
+#[test]
+fn damaged_documents_never_panic_and_return_their_memory() {
+    let text = document(|document| {
+        document["meshes"][0]["primitives"] = json!([
+            {"attributes": {"POSITION": 0, "NORMAL": 1, "_id": 3}, "indices": 4},
+            {"attributes": {"POSITION": 1}, "mode": 1},
+            {"attributes": {"POSITION": 2}, "mode": 2}
+        ]);
+        document["nodes"] = json!([{"children": [1, 2]}, {"mesh": 0}, {"mesh": 0, "scale": [1, 2, 3]}]);
+    })
+    .to_string();
+    let mut state = 5u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize
+    };
+    let (mut sound, mut refused) = (0, 0);
+    for _ in 0..4000 {
+        let mut damaged = text.clone().into_bytes();
+        for _ in 0..1 + next() % 3 {
+            let at = next() % damaged.len();
+            damaged[at] = b"0123456789-.[]{},\""[next() % 18];
+        }
+        let exec = Exec::default().with_memory(1 << 20);
+        let context = ReadContext { exec: exec.clone(), ..ReadContext::default() };
+        match read(&damaged, format_by_id("gltf").unwrap(), &context) {
+            Ok(_) => sound += 1,
+            Err(_) => refused += 1,
+        }
+        assert_eq!(exec.memory_taken(), 0);
+    }
+    assert!(sound > 100 && refused > 1000, "{sound} {refused}");
+}
