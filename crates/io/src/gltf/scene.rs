@@ -36,7 +36,7 @@ pub(super) fn placed_nodes<'j>(
             .into());
     }
     // Links, colours and the path of the search for cycles, and the list of nodes.
-    memory.take(count, 8 * size_of::<usize>() + 2 * size_of::<At<'_>>() + 32)?;
+    memory.take(count, size_of::<[usize; 8]>() + 2 * size_of::<At<'_>>() + 32)?;
     let Links { children, mut ways } = links(document, count)?;
     refuse_cycles(&children)?;
     let roots = roots(document, &ways)?;
