@@ -153,7 +153,11 @@ impl Accessor<'_> {
     }
 
     fn bytes<const N: usize>(&self, element: usize, component: usize) -> [u8; N] {
-        self.stored(element).map_or([0; N], |(strip, at)| strip.bytes(at, component))
+        match (&self.base, &self.sparse) {
+            // Nearly all accessors are so, and large.
+            (Some(base), None) => base.bytes(element, component),
+            _ => self.stored(element).map_or([0; N], |(strip, at)| strip.bytes(at, component)),
+        }
     }
 
     /// A number as it is stored.
