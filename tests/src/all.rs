@@ -5,6 +5,8 @@
 
 mod bench;
 mod codes;
+mod collection;
+mod collection_obj;
 mod command_line;
 mod documents;
 mod floors;
@@ -12,6 +14,7 @@ mod harness;
 mod laws;
 mod malformed;
 mod malformed_gltf;
+mod malformed_obj;
 mod oracles;
 mod peer_gltf;
 mod properties;

@@ -53,7 +53,7 @@ pub use detect::{DetectError, detect, format_by_id, format_for_output};
 pub use explanations::{EXPLANATIONS, explanation};
 pub use format::{FORMATS, Format, Keeps, Precision, ReadFn, Sniff, WriteFn};
 pub use options::{Encoding, Instances, ReadOptions, WriteOptions};
-pub use read::{ReadContext, ReadShape, read, slurp};
+pub use read::{ReadContext, ReadShape, read, slurp, slurp_sized};
 pub use read_error::{Fault, ReadError};
 pub use siblings::{SiblingError, SiblingName, SiblingOutputs, Siblings};
 pub use write::{WriteContext, write};
