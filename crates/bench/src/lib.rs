@@ -5,6 +5,7 @@
 
 mod files;
 mod measure;
+mod table;
 mod tessellate;
 
 use std::ffi::OsString;
@@ -32,6 +33,9 @@ struct Arguments {
     /// The tolerance of conversions, relative to the diagonal of the input's bounding box
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
+    /// A file with the JSON lines of peers: print a table of their figures beside these instead
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    against: Option<PathBuf>,
     /// Print JSON, which is what is printed anyhow
     #[arg(long)]
     json: bool,
@@ -62,6 +66,17 @@ impl Task {
     }
 }
 
+impl Task {
+    /// What peers call the same work on the same input.
+    pub(crate) fn peer_task(self, input: &str) -> String {
+        let extension = input.rsplit('.').next().unwrap_or_default();
+        match self {
+            Self::Read => format!("m.read_1m_{extension}"),
+            Self::Tessellate | Self::Write => String::new(),
+        }
+    }
+}
+
 /// What a task found: the input's name, sizes and quality figures, and the times.
 pub(crate) struct Outcome {
     pub(crate) input: String,
@@ -88,7 +103,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
             return if written.is_ok() { code } else { 2 };
         }
     };
-    let Arguments { task, data, runs, threads, tolerance, json: _ } = arguments;
+    let Arguments { task, data, runs, threads, tolerance, against, json: _ } = arguments;
     let setting = Setting { data, runs, tolerance };
     let work = || match task {
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
@@ -102,8 +117,21 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
             Err(error) => Err(format!("{count} threads cannot be started: {error}")),
         },
     };
+    let outcome = outcome.and_then(|outcomes| match against {
+        None => Ok((outcomes, None)),
+        Some(path) => {
+            let said = |error: String| format!("{}: {error}", path.display());
+            let lines = std::fs::read_to_string(&path).map_err(|error| said(error.to_string()))?;
+            let table = table::markdown(task, &outcomes, &lines).map_err(said)?;
+            Ok((outcomes, Some(table)))
+        }
+    });
     match outcome {
-        Ok(outcomes) => {
+        Ok((_, Some(table))) => {
+            let _ = write!(out, "{table}");
+            0
+        }
+        Ok((outcomes, None)) => {
             for Outcome { input, times, figures } in outcomes {
                 let mut line = json!({
                     "task": task.name(),
