@@ -85,9 +85,10 @@ pub(super) fn assemble(
         columns.list.into_iter().try_for_each(|column| cloud.insert_attribute(column)).map_err(unfit)?;
         shape.parts.push(Part::new(cloud).named(name));
     }
-    let of_runs = |runs: &[Run], object: u32| {
-        let mut own = runs.iter().filter(|run| run.labels.object == object);
-        own.next().map(|run| run.labels.material)
+    // Runs stand in the order of the objects.
+    let first_material = |runs: &[Run], object: u32| {
+        let first = runs.partition_point(|run| run.labels.object < object);
+        runs.get(first).and_then(|run| run.labels.material.checked_sub(1))
     };
     let mut placed: Vec<(u32, Part)> = Vec::new();
     for (object, faces, geometry) in mesh_parts {
@@ -97,8 +98,7 @@ pub(super) fn assemble(
     }
     for (object, runs_of, geometry) in side_parts {
         let runs = if runs_of == Domain::Face { &statements.lines } else { &statements.points };
-        let material = of_runs(runs, object).and_then(|id| id.checked_sub(1));
-        placed.push((object, Part { material, ..Part::new(geometry) }));
+        placed.push((object, Part { material: first_material(runs, object), ..Part::new(geometry) }));
     }
     // In the order of the objects, meshes before lines before points.
     placed.sort_by_key(|(object, _)| *object);
