@@ -22,7 +22,7 @@ pub(crate) const FORMAT: Format = Format {
     text: true,
     up: None,
     precision: Precision::F64,
-    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::PolyMesh, Kind::TriMesh],
+    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::GeometricGraph, Kind::PolyMesh, Kind::TriMesh],
     keeps: &[Keeps::Normals, Keeps::Texcoords, Keeps::Colors, Keeps::Wedges, Keeps::Names, Keeps::Parts],
     read_options: &[],
     write_options: &[],

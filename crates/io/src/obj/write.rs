@@ -119,6 +119,12 @@ impl Writer<'_> {
                 }
                 sink.bytes(b"\n")?;
             }
+            Geometry::GeometricGraph(graph) => {
+                for ends in graph.edges() {
+                    let [a, b] = ends.map(|end| self.first + end as usize);
+                    sink.text(format_args!("l {a} {b}\n"))?;
+                }
+            }
             Geometry::PointCloud(_) => {
                 for index in 0..points.len() {
                     sink.text(format_args!("p {}\n", self.first + index))?;
