@@ -213,9 +213,8 @@ impl<'a> Reader<'a> {
             before += element.lines();
             before > found
         });
-        let (name, rows, line) = element.map_or(("rows", 0, 0), |found| {
-            (found.element.name.as_str(), found.element.rows, found.element.line)
-        });
+        let (name, rows, line) = element
+            .map_or(("rows", 0, 0), |found| (found.element.name.as_str(), found.element.rows, found.element.line));
         let row = found + rows as u64 - before.min(found + rows as u64);
         let expected = format!("{rows} rows of \"{}\", as line {line} promises", short(name));
         Fault::new("E-ply-truncated", Place::Byte(self.text.len() as u64), "the end of the file", expected)

@@ -297,7 +297,8 @@ impl Reader<'_> {
             _ => self.vertices,
         };
         if most as usize >= limit {
-            let wrong = |row: &&[u8; 12]| row.chunks_exact(4).any(|number| u32::decode::<BIG>(number) as usize >= limit);
+            let wrong =
+                |row: &&[u8; 12]| row.chunks_exact(4).any(|number| u32::decode::<BIG>(number) as usize >= limit);
             let bodies = part.chunks_exact(stride).map(|row| row.get(corners..).and_then(|row| row.first_chunk()));
             let row = bodies.flatten().position(|row| wrong(&row)).unwrap_or(0);
             let body = part.get(row * stride + corners..).unwrap_or(&[]);
@@ -446,7 +447,8 @@ impl Reader<'_> {
 
     fn positions<const BIG: bool>(&self, set: &impl RowSet, axes: [usize; 3], positions: &mut Vec<DVec3>) {
         let [x, y, z] = axes.map(|property| self.place(property));
-        let [kind, others @ ..] = axes.map(|at| self.element.properties.get(at).map_or(Type::Float, |found| found.kind));
+        let [kind, others @ ..] =
+            axes.map(|at| self.element.properties.get(at).map_or(Type::Float, |found| found.kind));
         if others == [kind; 2] && x.0 == y.0 && y.0 == z.0 {
             with_type!(kind, N => positions.extend(set.segment(x.0).map(|row| {
                 let at = |offset: usize| N::decode::<BIG>(row.get(offset..).unwrap_or(&[])).to_f64();

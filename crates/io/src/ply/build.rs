@@ -103,7 +103,8 @@ impl Builder<'_, '_> {
                 Role::Strips => strips.push((index, element, plan, rows)),
                 Role::Table => {
                     if ["face", "edge", "tristrips"].contains(&element.name.as_str()) && element.rows > 0 {
-                        let message = format!("\"{}\" does not say which vertices: it was kept as a table", element.name);
+                        let message =
+                            format!("\"{}\" does not say which vertices: it was kept as a table", element.name);
                         self.findings.push("W-ply-table", Severity::Warning, Place::line(element.line), message);
                     }
                     let mut table = Table { name: element.name.clone(), columns: Attributes::new(rows.len) };
@@ -183,8 +184,7 @@ impl Builder<'_, '_> {
     }
 
     fn skipped_faces(&mut self, face: &FaceRows) {
-        let rows: Vec<usize> =
-            face.skipped.iter().take(Findings::PLACES_KEPT).map(|&row| row as usize).collect();
+        let rows: Vec<usize> = face.skipped.iter().take(Findings::PLACES_KEPT).map(|&row| row as usize).collect();
         let message = "a face of fewer than three corners was left out";
         self.degenerate(face.index, &rows, face.skipped.len(), message);
     }
@@ -330,12 +330,7 @@ fn row_in_file(skipped: &[u32], face: usize) -> usize {
     row
 }
 
-fn graph_of(
-    points: Vec<DVec3>,
-    edges: Vec<[u32; 2]>,
-    vertex: Columns,
-    edge: Columns,
-) -> Result<Geometry, ReadError> {
+fn graph_of(points: Vec<DVec3>, edges: Vec<[u32; 2]>, vertex: Columns, edge: Columns) -> Result<Geometry, ReadError> {
     let mut graph = GeometricGraph::try_new(points, edges).map_err(wrong)?;
     for column in vertex.columns {
         graph.insert_vertex_attribute(column).map_err(wrong)?;

@@ -324,9 +324,8 @@ impl Parser {
     fn property(&mut self, parts: [&[u8]; 4], memory: &mut Memory<'_>) -> Result<(), ReadError> {
         self.count_one()?;
         let kind = |word: &[u8]| {
-            Type::from_name(word).ok_or_else(|| {
-                self.fault("E-ply-type", word, "char, uchar, short, ushort, int, uint, float or double")
-            })
+            Type::from_name(word)
+                .ok_or_else(|| self.fault("E-ply-type", word, "char, uchar, short, ushort, int, uint, float or double"))
         };
         let (name, kind, count) = match parts {
             [b"list", count, item, name] => {

@@ -58,8 +58,7 @@ pub(super) const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 pub(super) const ENDS: [&str; 2] = ["vertex1", "vertex2"];
 
 const NORMALS: &[&str] = &["nx", "ny", "nz"];
-const TEXCOORDS: [&[&str]; 4] =
-    [&["s", "t"], &["u", "v"], &["texture_u", "texture_v"], &["texture_s", "texture_t"]];
+const TEXCOORDS: [&[&str]; 4] = [&["s", "t"], &["u", "v"], &["texture_u", "texture_v"], &["texture_s", "texture_t"]];
 const COLORS: [&[&str]; 6] = [
     &["red", "green", "blue", "alpha"],
     &["red", "green", "blue"],
@@ -242,7 +241,8 @@ mod tests {
             let plan = plan("thing", &floats(text));
             plan.columns.iter().map(|group| (group.name.clone(), group.properties.len())).collect::<Vec<_>>()
         };
-        let of = |list: &[(&str, usize)]| list.iter().map(|(name, width)| ((*name).to_owned(), *width)).collect::<Vec<_>>();
+        let of =
+            |list: &[(&str, usize)]| list.iter().map(|(name, width)| ((*name).to_owned(), *width)).collect::<Vec<_>>();
         assert_eq!(names("a_0 a_1 a_2 b_0 c_1 c_2"), of(&[("a", 3), ("b_0", 1), ("c_1", 1), ("c_2", 1)]));
         assert_eq!(names("a a_0 a_1"), of(&[("a", 1), ("a_0", 1), ("a_1", 1)]));
         assert_eq!(names("a_0 a_1 a_3 _0 _1"), of(&[("a", 2), ("a_3", 1), ("_0", 1), ("_1", 1)]));

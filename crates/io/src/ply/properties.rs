@@ -62,7 +62,8 @@ impl Properties {
             if properties.columns.iter().any(|property| property.column == column.name()) {
                 continue;
             }
-            let everywhere: Option<Vec<&Column>> = having.iter().map(|other| other.and_then(|set| set.get(column.name()))).collect();
+            let everywhere: Option<Vec<&Column>> =
+                having.iter().map(|other| other.and_then(|set| set.get(column.name()))).collect();
             let alike = everywhere.filter(|all| {
                 all.iter().all(|other| {
                     other.width() == column.width() && other.values().type_name() == column.values().type_name()
@@ -85,7 +86,8 @@ impl Properties {
             if properties.lists.iter().any(|property| property.column == list.name()) {
                 continue;
             }
-            let everywhere: Option<Vec<&ListColumn>> = having.iter().map(|other| other.and_then(|set| set.list(list.name()))).collect();
+            let everywhere: Option<Vec<&ListColumn>> =
+                having.iter().map(|other| other.and_then(|set| set.list(list.name()))).collect();
             let same = |other: &&ListColumn| other.values().type_name() == list.values().type_name();
             let Some(all) = everywhere.filter(|all| all.iter().all(same)) else {
                 lose(list.name(), "not every part has it in the same type");
@@ -232,7 +234,8 @@ fn property(columns: &[&Column], lose: &mut impl FnMut(&str, &str)) -> Option<Pr
                     }));
                     let exact = |number: f64| number.is_nan() || f64::from(number as f32) == number;
                     let mut alphas = columns.iter().flat_map(|column| {
-                        (0..column.len()).flat_map(move |i| (3..column.width()).map(move |alpha| column.number(i, alpha)))
+                        (0..column.len())
+                            .flat_map(move |i| (3..column.width()).map(move |alpha| column.number(i, alpha)))
                     });
                     (if alphas.all(exact) { colors } else { Type::Double }, Stored::SrgbFractions)
                 }

@@ -227,9 +227,7 @@ impl<'s> File<'s> {
             Geometry::TriMesh(mesh) => {
                 mesh.triangles().iter().enumerate().try_for_each(|(index, corners)| put(index, corners))
             }
-            Geometry::PolyMesh(mesh) => {
-                mesh.faces().enumerate().try_for_each(|(index, corners)| put(index, corners))
-            }
+            Geometry::PolyMesh(mesh) => mesh.faces().enumerate().try_for_each(|(index, corners)| put(index, corners)),
             _ => Ok(()),
         }
     }
