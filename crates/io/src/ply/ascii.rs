@@ -10,7 +10,7 @@ use shapeloom_mesh::Values;
 use super::header::{Element, Header, short};
 use super::plan::{Plan, Role};
 use super::rows::{Rows, check_list_values, drop_last, finite_fault, index_fault, polygon_fault};
-use super::types::{NO_INDEX, Type, with_values};
+use super::types::{NO_INDEX, Type, float_index, with_values};
 use crate::memory::{Memory, make_room};
 use crate::text::{CountFault, NumberFault, Scanner, is_blank, never_joined, pieces};
 use crate::{Fault, ReadContext, ReadError};
@@ -380,7 +380,7 @@ impl<'a> Reader<'a> {
                         return Err(few_values(reader, start, row, number).into());
                     }
                     // A sign, a point, or what is no number at all.
-                    whole(scan, i64::MIN, i64::MAX)?.try_into().unwrap_or(NO_INDEX)
+                    float_index(whole(scan)?)
                 }
             };
             if *corner as usize >= self.vertices {
@@ -457,7 +457,7 @@ fn coordinate(scan: &mut Scanner<'_>, kind: Type) -> Result<f64, Box<Fault>> {
         Type::Double => f64::parse(scan),
         other => {
             let (least, most) = other.bounds().unwrap_or((i64::MIN, i64::MAX));
-            whole(scan, least, most).map(|number| number as f64)
+            whole_within(scan, least, most).map(|number| number as f64)
         }
     }
 }
@@ -502,7 +502,7 @@ macro_rules! parse_whole {
                     Ok(count) if count <= Self::MAX as u64 => Ok(count as Self),
                     _ => {
                         *scan = ahead;
-                        whole(scan, i64::from(Self::MIN), i64::from(Self::MAX)).map(|number| number as Self)
+                        whole_within(scan, i64::from(Self::MIN), i64::from(Self::MAX)).map(|number| number as Self)
                     }
                 }
             }
@@ -512,17 +512,24 @@ macro_rules! parse_whole {
 
 parse_whole!(i8, u8, i16, u16, i32, u32);
 
-/// A whole number within bounds. `2.0` is one too.
-fn whole(scan: &mut Scanner<'_>, least: i64, most: i64) -> Result<i64, Box<Fault>> {
+/// A whole number. `2.0` is one too.
+fn whole(scan: &mut Scanner<'_>) -> Result<f64, Box<Fault>> {
     scan.skip_blanks();
     let before = scan.clone();
-    match scan.number() {
-        Ok(number) if number.fract() == 0.0 && number >= least as f64 && number <= most as f64 => Ok(number as i64),
+    scan.number()
+        .ok()
+        .filter(|number| number.fract() == 0.0)
+        .ok_or_else(|| Fault::new("E-ply-number", before.place(), before.found(), "a whole number"))
+}
+
+/// A whole number within bounds.
+fn whole_within(scan: &mut Scanner<'_>, least: i64, most: i64) -> Result<i64, Box<Fault>> {
+    scan.skip_blanks();
+    let before = scan.clone();
+    match whole(scan) {
+        Ok(number) if number >= least as f64 && number <= most as f64 => Ok(number as i64),
         _ => {
-            let expected = match (least, most) {
-                (i64::MIN, _) => "a whole number".to_owned(),
-                _ => format!("a whole number from {least} to {most}"),
-            };
+            let expected = format!("a whole number from {least} to {most}");
             Err(Fault::new("E-ply-number", before.place(), before.found(), expected))
         }
     }
@@ -544,4 +551,134 @@ fn odd_number(scan: &mut Scanner<'_>, fault: NumberFault) -> Result<f64, Box<Fau
         return Ok(if word.starts_with(b"-") { f64::NEG_INFINITY } else { f64::INFINITY });
     }
     Err(Fault::new("E-ply-number", before.place(), before.found(), fault.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shapeloom_core::{Diagnostic, Findings};
+
+    const FILE: &str = "ply\nformat ascii 1.0\nelement none 3\nelement camera 1\nproperty list uchar float l\n\
+        property int id\nelement vertex 5\nproperty uchar blue\nproperty float y\nproperty float x\nproperty uchar red\n\
+        property double z\nproperty uchar green\nproperty list uchar short near\nelement face 5\nproperty float w\n\
+        property list uchar int vertex_index\nproperty list uchar int more\nend_header\n\
+        2 0.5 nan 7\n\n1 2 3 4 5e-1 6 0\n  11 12 13 14 15 16 2 -7 8\r\n21 22 23 24 25 26 1 9\n\t \n31 32 33 34 35 36 0\n\
+        41 0.1 0.1 44 0.1 46 0\n0.5 3 0 1 2 0\n1.5 2 0 1 1 8\n\n2.5 4 0 1 2 3 2 9 8\n3.5 0 1 1\n4.5 3 4.0 +3 2 0\n\n  \n";
+
+    fn with_pieces(text: &str, pieces: Option<Vec<Range<usize>>>) -> Result<(Vec<Rows>, Option<usize>), ReadError> {
+        let context = ReadContext::default();
+        let mut memory = Memory::new(&context.exec);
+        let header = Header::parse(text.as_bytes(), &context, &mut memory, &mut Findings::default())?;
+        let plans: Vec<Plan> = header.elements.iter().map(Plan::new).collect();
+        match pieces {
+            None => read_rows(text.as_bytes(), &header, &plans, &context, &mut memory),
+            Some(pieces) => read_pieces(text.as_bytes(), &pieces, &header, &plans, &context, &mut memory),
+        }
+    }
+
+    fn line_pieces(text: &str, lines_each: usize) -> Vec<Range<usize>> {
+        let mut at = text.find("end_header\n").unwrap() + 11;
+        let lines: Vec<&str> = text[at..].split_inclusive('\n').collect();
+        let mut pieces = Vec::new();
+        for part in lines.chunks(lines_each) {
+            let length: usize = part.iter().map(|line| line.len()).sum();
+            pieces.push(at..at + length);
+            at += length;
+        }
+        pieces
+    }
+
+    #[test]
+    fn rows_are_read_as_their_header_says() {
+        let (rows, rest) = with_pieces(FILE, None).unwrap();
+        assert_eq!((rest, rows[0].len, rows[1].columns[0].clone()), (None, 3, Values::I32(vec![7])));
+        let Values::F32(list) = &rows[1].lists[0].values else { panic!("floats") };
+        assert!(list[0] == 0.5 && list[1].is_nan());
+        assert_eq!(rows[2].positions[0], DVec3::new(3.0, 2.0, 0.5));
+        // A float is as near to 0.1 as floats are, a double as doubles.
+        assert_eq!(rows[2].positions[4], DVec3::new(f64::from(0.1f32), f64::from(0.1f32), 0.1));
+        // Components are put in order: red, green, blue.
+        let Values::U8(color) = &rows[2].columns[0] else { panic!("bytes") };
+        assert_eq!(color[..6], [4, 6, 1, 14, 16, 11]);
+        assert_eq!(
+            (&rows[2].lists[0].ends[..], &rows[2].lists[0].values),
+            (&[0, 2, 3, 3, 3][..], &Values::I16(vec![-7, 8, 9]))
+        );
+        // Two faces have too few corners: the rest of their rows goes with them.
+        assert_eq!((rows[3].len, rows[3].faces.len(), &rows[3].skipped[..]), (3, 3, &[1, 3][..]));
+        assert_eq!(rows[3].faces.face(2), [4, 3, 2]);
+        assert_eq!(rows[3].columns[0], Values::F32(vec![0.5, 2.5, 4.5]));
+        assert_eq!((&rows[3].lists[0].ends[..], &rows[3].lists[0].values), (&[0, 2, 2][..], &Values::I32(vec![9, 8])));
+    }
+
+    #[test]
+    fn pieces_do_not_change_what_is_read() {
+        let whole = format!("{:?}", with_pieces(FILE, None).unwrap());
+        for lines in 1..20 {
+            let (mut rows, rest) = with_pieces(FILE, Some(line_pieces(FILE, lines))).unwrap();
+            // Components are put in order when all pieces are together.
+            let Values::U8(color) = &mut rows[2].columns[0] else { panic!("bytes") };
+            reorder(color, &[3, 5, 0]);
+            assert_eq!(format!("{:?}", (rows, rest)), whole, "{lines} lines in a piece");
+        }
+        let fault = |text: &str, lines: Option<usize>| {
+            let error = with_pieces(text, lines.map(|lines| line_pieces(text, lines))).unwrap_err();
+            let fault = error.fault().unwrap();
+            (error.code(), fault.place.clone(), fault.within.clone(), fault.found.clone())
+        };
+        let short = FILE.rsplit_once("4.5").unwrap().0;
+        let long = FILE.replace("3.5 0 1 1", "3.5 0 1 1 1");
+        for text in [short, &long, &FILE.replace("2 9 8", "2 9"), &FILE.replace("0 1 2 3", "0 1 2 5")] {
+            let alone = fault(text, None);
+            for lines in 1..20 {
+                assert_eq!(fault(text, Some(lines)), alone);
+            }
+        }
+        let more = FILE.to_owned() + "  x\n";
+        for lines in 1..20 {
+            let rest = with_pieces(&more, Some(line_pieces(&more, lines))).unwrap().1;
+            assert_eq!(rest, Some(more.len() - 2));
+        }
+    }
+
+    #[test]
+    fn values_that_do_not_fit_are_named() {
+        let code = |from: &str, to: &str| {
+            let error = with_pieces(&FILE.replacen(from, to, 1), None).unwrap_err();
+            (error.code(), error.fault().unwrap().found.clone())
+        };
+        let pair = |code, found: &str| (code, format!("\"{found}\""));
+        assert_eq!(code("1 2 3 4", "256 2 3 4"), pair("E-ply-number", "256"));
+        assert_eq!(code("1 2 3 4", "-1 2 3 4"), pair("E-ply-number", "-1"));
+        assert_eq!(code("1 2 3 4", "1.5 2 3 4"), pair("E-ply-number", "1.5"));
+        assert_eq!(code("1 2 3 4", "1 2,0 3 4"), pair("E-ply-number", "2,0"));
+        assert_eq!(code("1 2 3 4", "1 inf 3 4"), pair("E-ply-finite", "inf"));
+        assert_eq!(code("1 2 3 4", "1 2 -1e39 4"), pair("E-ply-finite", "-1e39"));
+        assert_eq!(code("1 2 3 4 5e-1", "1 2 3 4 1e400"), pair("E-ply-finite", "1e400"));
+        assert_eq!(code("2 -7 8", "-2 -7 8"), pair("E-ply-count", "-2"));
+        assert_eq!(code("2 -7 8", "99999999999999999999 -7 8"), pair("E-ply-count", "99999999999999999999"));
+        assert_eq!(code("2 -7 8", "4294967295 -7 8").0, "E-ply-row");
+        assert_eq!(code("3 0 1 2 0", "3 0 1 -2 0"), pair("E-ply-index", "-2"));
+        assert_eq!(code("3 0 1 2 0", "3 0 1 5 0"), pair("E-ply-index", "5"));
+        assert_eq!(code("3 0 1 2 0", "3 0 1 0.5 0"), pair("E-ply-number", "0.5"));
+        assert_eq!(code("3 0 1 2 0", "3 0 1 18446744073709551617 0"), pair("E-ply-index", "18446744073709551617"));
+        assert_eq!(code("3 0 1 2 0", "3 0").0, "E-ply-row");
+        assert_eq!(code("3 0 1 2 0", "3000000 0 1 2 0").0, "E-ply-row");
+    }
+
+    #[test]
+    fn floats_are_rounded_once() {
+        let mut state = 1u64;
+        for _ in 0..100_000 {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            // Halfway between two floats, and a little above and below.
+            let float = f32::from_bits((state >> 33) as u32 & 0x7eff_ffff);
+            let middle = (f64::from(float) + f64::from(float.next_up())) / 2.0;
+            for text in [format!("{middle}"), format!("{middle}000000000000000000001"), format!("{float:e}")] {
+                let text = if text.contains('.') || text.contains('e') { text } else { text + ".0" };
+                let read = f32::parse(&mut Scanner::new(text.as_bytes(), 0)).unwrap();
+                assert_eq!(read.to_bits(), text.parse::<f32>().unwrap().to_bits(), "{text}");
+            }
+        }
+    }
 }

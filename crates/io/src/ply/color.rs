@@ -14,19 +14,26 @@ pub(super) fn linear(srgb: f64) -> f64 {
     linear.copysign(srgb)
 }
 
+/// Values of both pieces of the curve: the published ones overlap a little where they meet.
+fn both_pieces(intensity: f64) -> [f64; 2] {
+    let size = intensity.abs();
+    [srgb(size).copysign(intensity), intensity * 12.92]
+}
+
 /// The float that [`linear`] takes to this intensity to the last bit, if there is one.
 fn exact_float(intensity: f64) -> Option<f32> {
-    let near = srgb(intensity.abs()).copysign(intensity) as f32;
-    let candidates = [near, near.next_up(), near.next_down()];
+    let near = both_pieces(intensity).map(|value| value as f32);
+    let candidates = near.into_iter().flat_map(|near| [near, near.next_up(), near.next_down()]);
     candidates.into_iter().find(|&float| linear(f64::from(float)).to_bits() == intensity.to_bits())
 }
 
 /// The double that [`linear`] takes to this intensity to the last bit, or the nearest to it that is found.
 fn nearest_double(intensity: f64) -> f64 {
-    let near = srgb(intensity.abs()).copysign(intensity);
+    let [near, straight] = both_pieces(intensity);
     let (mut up, mut down) = (near, near);
     for _ in 0..16 {
-        if let Some(&exact) = [up, down].iter().find(|&&double| linear(double).to_bits() == intensity.to_bits()) {
+        let found = [up, down, straight].into_iter().find(|&double| linear(double).to_bits() == intensity.to_bits());
+        if let Some(exact) = found {
             return exact;
         }
         (up, down) = (up.next_up(), down.next_down());
@@ -63,6 +70,9 @@ mod tests {
 
     #[test]
     fn fractions_survive_to_the_bit() {
+        // Where the pieces of the curve meet.
+        let meeting = (0.0404f32.to_bits()..0.0405f32.to_bits()).map(f32::from_bits);
+        assert!(meeting.map(|float| linear(f64::from(float))).all(|intensity| exact_float(intensity).is_some()));
         let mut state = 1u32;
         for i in 0..200_000 {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

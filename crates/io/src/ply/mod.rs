@@ -20,6 +20,8 @@ mod header;
 mod plan;
 mod properties;
 mod read;
+#[cfg(test)]
+mod read_tests;
 mod rows;
 mod strips;
 #[cfg(test)]

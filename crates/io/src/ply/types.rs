@@ -148,7 +148,8 @@ macro_rules! numbers {
     };
 }
 
-fn float_index(number: f64) -> u32 {
+/// A number as an index, [`NO_INDEX`] where it is none.
+pub(super) fn float_index(number: f64) -> u32 {
     if number >= 0.0 && number < f64::from(NO_INDEX) && number.fract() == 0.0 { number as u32 } else { NO_INDEX }
 }
 
