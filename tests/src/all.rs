@@ -5,12 +5,14 @@
 
 mod bench;
 mod codes;
+mod collection_ply;
 mod command_line;
 mod documents;
 mod floors;
 mod harness;
 mod laws;
 mod malformed;
+mod malformed_ply;
 mod oracles;
 mod properties;
 mod regressions;
