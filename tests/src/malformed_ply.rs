@@ -101,6 +101,7 @@ fn binary_faults_are_told_with_their_byte() {
     let byte = |at: usize| Place::Byte(at as u64);
     assert_eq!(refused(&changed(body + 16, &f32::NAN.to_le_bytes())), ("E-ply-finite", byte(body + 12)));
     assert_eq!(refused(&changed(body + 48 + 26 + 5, &(-1i32).to_le_bytes())), ("E-ply-index", byte(body + 48 + 26)));
+    assert_eq!(refused(&changed(body + 48 + 1, &4i32.to_le_bytes())), ("E-ply-index", byte(body + 48)));
     assert_eq!(refused(&changed(body + 48 + 39, &[200])), ("E-ply-truncated", byte(body + 48 + 39)));
     assert_eq!(refused(&sound[..body + 20]), ("E-ply-claim", line(3)));
     assert_eq!(refused(&sound[..sound.len() - 1]).0, "E-ply-truncated");

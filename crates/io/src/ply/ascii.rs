@@ -127,11 +127,15 @@ fn filled_lines(text: &[u8], piece: &Range<usize>) -> u64 {
     lines
 }
 
-/// Where the line of a row begins.
-pub(super) fn row_offset(text: &[u8], header: &Header, element: usize, row: usize) -> usize {
+/// The number of a row's line among those that have something on them.
+pub(super) fn line_of_row(header: &Header, element: usize, row: usize) -> u64 {
     let before = header.elements.iter().take(element).filter(|element| !element.properties.is_empty());
-    let lines = before.map(|element| element.rows as u64).sum::<u64>() + row as u64;
-    let mut scan = Scanner::new(text, header.body);
+    before.map(|element| element.rows as u64).sum::<u64>() + row as u64
+}
+
+/// Where the line begins that comes so many lines that have something on them after a line.
+pub(super) fn line_offset(text: &[u8], from: usize, lines: u64) -> usize {
+    let mut scan = Scanner::new(text, from);
     for _ in 0..lines {
         skip_blank_lines(&mut scan);
         scan.next_line();

@@ -40,11 +40,14 @@ pub(super) fn row_offset(bytes: &[u8], start: usize, layout: Layout, element: &E
         return start.saturating_add(rows.tail.saturating_mul(row));
     }
     let mut at = start;
+    let mut walked = Walked::default();
     for row in 0..row {
+        walked.starts.clear();
+        walked.counts.clear();
         let found = if layout == Layout::BigEndian {
-            rows.walk::<true>(bytes, at, row, &mut Walked::default())
+            rows.walk::<true>(bytes, at, row, &mut walked)
         } else {
-            rows.walk::<false>(bytes, at, row, &mut Walked::default())
+            rows.walk::<false>(bytes, at, row, &mut walked)
         };
         match found {
             Ok(next) => at = next,

@@ -246,6 +246,8 @@ mod tests {
         assert_eq!(names("a_0 a_1 a_2 b_0 c_1 c_2"), of(&[("a", 3), ("b_0", 1), ("c_1", 1), ("c_2", 1)]));
         assert_eq!(names("a a_0 a_1"), of(&[("a", 1), ("a_0", 1), ("a_1", 1)]));
         assert_eq!(names("a_0 a_1 a_3 _0 _1"), of(&[("a", 2), ("a_3", 1), ("_0", 1), ("_1", 1)]));
+        let mixed = plan("thing", &[("a_0", Type::Float), ("a_1", Type::Float), ("a_2", Type::Int)]);
+        assert_eq!(columns(&mixed), [("a", 2, Meaning::Plain), ("a_2", 1, Meaning::Plain)]);
         assert_eq!(names("a_0 b a_1"), of(&[("a_0", 1), ("b", 1), ("a_1", 1)]));
     }
 

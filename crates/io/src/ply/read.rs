@@ -1,5 +1,7 @@
 //! Reading PLY.
 
+use std::cell::Cell;
+
 use shapeloom_core::{Findings, Place, Severity};
 use shapeloom_shape::Shape;
 
@@ -8,7 +10,7 @@ use super::header::{Header, Layout};
 use super::plan::{Plan, Role};
 use super::{ascii, binary};
 use crate::memory::Memory;
-use crate::text::{in_lines, line_place, plain_text};
+use crate::text::{in_lines, line_at, line_place, plain_text};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
@@ -55,6 +57,16 @@ impl Places<'_> {
     }
 }
 
+/// A line whose place is known.
+#[derive(Clone, Copy)]
+struct KnownLine {
+    /// Its number among the lines of the body that have something on them.
+    line: u64,
+    offset: usize,
+    /// Its number in the file.
+    number: u64,
+}
+
 fn read_body(
     places: &Places<'_>,
     mut header: Header,
@@ -83,13 +95,28 @@ fn read_body(
         let message = "the file goes on after its last row; the rest was passed over";
         findings.push("W-ply-trailing", Severity::Warning, places.of(rest), message);
     }
-    let place = |index: usize, row: usize| {
-        places.of(match (header.elements.get(index), starts.get(index)) {
-            (Some(element), Some(&start)) if !places.text => {
-                binary::row_offset(bytes, start, header.layout, element, row)
-            }
-            _ => ascii::row_offset(bytes, &header, index, row),
-        })
+    // Rows are asked for in order mostly: lines are counted from the last one on.
+    let last: Cell<Option<KnownLine>> = Cell::new(None);
+    let place = |index: usize, row: usize| match (header.elements.get(index), starts.get(index)) {
+        (Some(element), Some(&start)) if !places.text => {
+            places.of(binary::row_offset(bytes, start, header.layout, element, row))
+        }
+        _ => {
+            let line = ascii::line_of_row(&header, index, row);
+            let (offset, number) = match last.get().filter(|known| known.line <= line) {
+                Some(known) => {
+                    let offset = ascii::line_offset(bytes, known.offset, line - known.line);
+                    let more = line_at(bytes.get(known.offset..).unwrap_or(&[]), offset - known.offset);
+                    (offset, known.number + more - 1)
+                }
+                None => {
+                    let offset = ascii::line_offset(bytes, header.body, line);
+                    (offset, line_at(bytes, offset))
+                }
+            };
+            last.set(Some(KnownLine { line, offset, number }));
+            Place::line(number)
+        }
     };
     let shape = Shape { comments, ..Shape::default() };
     let builder = Builder { vertices, context, memory, place: &place, findings, losses: Vec::new(), shape };

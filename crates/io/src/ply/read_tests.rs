@@ -349,3 +349,48 @@ fn columns_of_every_type_survive() {
         assert_eq!(after.attributes().get(column.name()), Some(column));
     }
 }
+
+/// Whatever is done to the bytes of a file with everything in it: an error of ours, or a shape.
+#[test]
+fn broken_files_of_all_elements_never_panic() {
+    let shape = read_text(EVERYTHING).unwrap().shape;
+    let mut state = 1u64;
+    let mut dice = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize
+    };
+    let mut files = vec![EVERYTHING.as_bytes().to_vec()];
+    for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::BinaryBigEndian] {
+        files.push(written(&shape, encoding).0);
+    }
+    for whole in files {
+        for end in 0..whole.len() {
+            let context =
+                ReadContext { exec: shapeloom_core::Exec::default().with_memory(1 << 20), ..Default::default() };
+            let cut = read(&whole[..end], &FORMAT, &context);
+            assert!(cut.is_err() || end + 2 > whole.len(), "{end} of {}", whole.len());
+        }
+        for _ in 0..3000 {
+            let mut broken = whole.clone();
+            for _ in 0..1 + dice() % 3 {
+                let at = dice() % broken.len();
+                broken[at] = if dice() % 2 == 0 { dice() as u8 } else { b" 0123456789-\nab"[dice() % 15] };
+            }
+            let context =
+                ReadContext { exec: shapeloom_core::Exec::default().with_memory(1 << 20), ..Default::default() };
+            if let Ok(found) = read(&broken, &FORMAT, &context) {
+                // What is read can be written.
+                written_if_small(&found.shape);
+            }
+            assert_eq!(context.exec.memory_taken(), 0);
+        }
+    }
+}
+
+fn written_if_small(shape: &Shape) {
+    let rows: usize =
+        shape.tables.iter().filter(|table| !table.columns.is_empty()).map(|table| table.columns.len()).sum();
+    if rows < 1000 {
+        written(shape, Encoding::Ascii);
+    }
+}

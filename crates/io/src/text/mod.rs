@@ -11,4 +11,4 @@ pub use lines::{Line, Lines, Text, Token, Tokens, quoted};
 pub use numbers::{CountFault, NumberFault, parse_count, parse_number, shortest};
 pub(crate) use pieces::{never_joined, pieces};
 pub(crate) use print::{print_f32, print_f64, print_whole};
-pub(crate) use scanner::{Scanner, in_lines, is_blank, line_place, plain_text};
+pub(crate) use scanner::{Scanner, in_lines, is_blank, line_at, line_place, plain_text};
