@@ -394,3 +394,57 @@ fn written_if_small(shape: &Shape) {
         written(shape, Encoding::Ascii);
     }
 }
+
+#[test]
+fn faces_that_were_left_out_do_not_shift_the_places_of_others() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 4\nproperty list uchar int vertex_indices\nend_header\n\
+                0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 1\n1 0\n3 2 2 1\n";
+    let found = read_text(text).unwrap();
+    let only = found.findings.iter().next().unwrap();
+    let lines = [13, 15, 14, 16].map(Place::line);
+    assert_eq!((only.code, only.count, &only.places[..]), ("W-ply-degenerate", 4, &lines[..]));
+    // The same rows in binary, where a block of triangles is read at once: a face of two corners among them, its missing
+    // bytes at the end of the file.
+    let (head, _) = text.split_once("end_header\n").unwrap();
+    let head = head.replace("ascii", "binary_little_endian").replace("face 4", "face 2") + "end_header\n";
+    let faces = [&[3u8][..], &[0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0], &[2], &[0; 8], &[0; 4]].concat();
+    let vertices: Vec<u8> =
+        [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let bytes = [head.as_bytes(), &vertices, &faces].concat();
+    let found = read(&bytes, &FORMAT, &ReadContext::default()).unwrap();
+    let Geometry::TriMesh(mesh) = &*found.shape.parts[0].geometry else { panic!("triangles") };
+    assert_eq!(mesh.triangles(), [[0, 1, 2]]);
+    let places: Vec<(&str, &Place)> = found.findings.iter().map(|one| (one.code, &one.places[0])).collect();
+    let at = |from_end: usize| Place::Byte((bytes.len() - from_end) as u64);
+    assert_eq!(places, [("W-ply-trailing", &at(4)), ("W-ply-degenerate", &at(13))]);
+    // The first number that is no index, in a block of triangles.
+    let mut wrong = bytes.clone();
+    wrong[bytes.len() - 26 + 13] = 3;
+    assert!(read(&wrong, &FORMAT, &ReadContext::default()).is_ok());
+    wrong[bytes.len() - 26 + 9] = 3;
+    assert_eq!(read(&wrong, &FORMAT, &ReadContext::default()).unwrap_err().code(), "E-ply-index");
+}
+
+#[test]
+fn what_has_no_place_beside_others_is_named() {
+    let mut graph = shapeloom_mesh::GeometricGraph::try_new(vec![DVec3::ZERO, DVec3::X], vec![[0, 1]]).unwrap();
+    let color = vec![1.0, 0.0, 1.0, 0.1, 0.0, 1.0, 0.0, 0.2];
+    graph.insert_vertex_attribute(Column::try_new(COLOR, 4, Values::F64(color)).unwrap()).unwrap();
+    let mut shape = Shape::new(shapeloom_shape::Part::new(graph));
+    // Alpha in double precision keeps its bits.
+    survives(&shape);
+    shape.comments.push("two\nlines".into());
+    for name in ["edge", "vertex", "face", "a b", "a_b"] {
+        let mut columns = shapeloom_mesh::Attributes::new(1);
+        columns.insert(Column::labels("id", vec![7])).unwrap();
+        shape.tables.push(shapeloom_shape::Table { name: name.into(), columns });
+    }
+    let (bytes, losses) = written(&shape, Encoding::Ascii);
+    let wanted = ["line ends in comments", "table \"edge\"", "table \"vertex\"", "table \"a b\"", "table \"a_b\""];
+    assert_eq!(losses, wanted);
+    let again = read(&bytes, &FORMAT, &ReadContext::default()).unwrap().shape;
+    let names: Vec<&str> = again.tables.iter().map(|table| table.name.as_str()).collect();
+    assert_eq!((names, again.comments.len()), (vec!["face", "a_b"], 2));
+    assert_eq!(again.parts, shape.parts);
+}
