@@ -82,6 +82,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-format", "The format of standard output has to be named with --to."),
     ("E-usage-kind", "There is no kind of shape of that name; `shapeloom graph` lists them."),
     ("E-usage-outputs", "Two outputs have one name, or two kinds of data want standard output."),
+    ("E-usage-setting", "An option given with --set means nothing here: for this format, or for this command."),
     ("E-usage-shape", "There is no ready shape of that name."),
     ("E-usage-threads", "That many threads could not be started."),
     (

@@ -5,10 +5,15 @@ use std::sync::Arc;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::{CHUNK, map_chunks};
 use shapeloom_core::{Exec, Findings, Place, Severity, Stop};
-use shapeloom_mesh::{MeshOrigins, Origins, PointCloud, PolyMesh, Polyline, TriMesh, carry};
+use shapeloom_mesh::{GeometricGraph, PointCloud};
 use shapeloom_shape::{Geometry, Shape};
 
+use crate::cut::cut;
 use crate::{Fault, ReadError};
+
+/// What to do about positions that are not finite.
+pub(crate) const DROP_ADVICE: &str =
+    "repair the file, or leave such vertices out with the option drop_non_finite (--drop-non-finite)";
 
 /// Remarks on the faces of a mesh that name a vertex twice or whose corners lie on one line; `place` says where in the
 /// input a face is. Cost: one pass over the faces, parallel.
@@ -127,71 +132,82 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
         return Ok(None);
     }
     let wrong = |error: String| Fault::new("E-read-elements", Place::Whole, error, "a mesh");
-    let kept: Vec<u32> = (0..points.len() as u32).filter(|&vertex| points[vertex as usize].is_finite()).collect();
+    let finite = |vertex: &u32| points[*vertex as usize].is_finite();
+    let kept: Vec<u32> = (0..points.len() as u32).filter(finite).collect();
     let lost = points.len() - kept.len();
-    let positions: Vec<DVec3> = kept.iter().map(|&vertex| points[vertex as usize]).collect();
-    let mut renumbered = vec![u32::MAX; points.len()];
-    for (new, &old) in kept.iter().enumerate() {
-        renumbered[old as usize] = new as u32;
-    }
-    let whole = |corners: &[u32]| corners.iter().all(|&corner| renumbered[corner as usize] != u32::MAX);
-    Ok(Some(match geometry {
+    let mut new_of_old = vec![u32::MAX; points.len()];
+    kept.iter().enumerate().for_each(|(new, &old)| new_of_old[old as usize] = new as u32);
+    let gathered = || kept.iter().map(|&vertex| points[vertex as usize]).collect();
+    let (rest, lost_faces) = match geometry {
+        Geometry::PointCloud(cloud) => {
+            let mut rest = PointCloud::new(gathered());
+            for column in cloud.attributes() {
+                rest.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+            }
+            for list in cloud.attributes().lists() {
+                rest.insert_list(list.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+            }
+            (Some(rest.into()), 0)
+        }
+        // A polyline that loses a point falls apart: what is left of it is a graph.
+        Geometry::Polyline(line) => {
+            let (graph, edges) = finite_graph(&GeometricGraph::from(line.clone()), &kept, &new_of_old)?;
+            (Some(graph.into()), edges)
+        }
+        Geometry::GeometricGraph(graph) => {
+            let (graph, edges) = finite_graph(graph, &kept, &new_of_old)?;
+            (Some(graph.into()), edges)
+        }
         Geometry::TriMesh(mesh) => {
-            let faces: Vec<u32> =
-                (0..mesh.triangles().len() as u32).filter(|&face| whole(&mesh.triangles()[face as usize])).collect();
-            let wedges = faces.iter().flat_map(|&face| 3 * face..3 * face + 3).collect();
-            let triangles: Vec<[u32; 3]> = faces
-                .iter()
-                .map(|&face| mesh.triangles()[face as usize].map(|corner| renumbered[corner as usize]))
-                .collect();
+            let whole = |face: &u32| mesh.triangles()[*face as usize].iter().all(finite);
+            let faces: Vec<u32> = (0..mesh.triangles().len() as u32).filter(whole).collect();
             let lost_faces = mesh.triangles().len() - faces.len();
-            let origins = origins(kept, faces, wedges);
-            let (attributes, _) = carry(mesh.attributes(), &origins);
-            let mesh = TriMesh::with_attributes(positions, triangles, attributes);
-            (mesh.map_err(|error| wrong(error.to_string()))?.into(), lost, lost_faces)
+            (cut(geometry, kept, faces, &new_of_old).map_err(|error| wrong(error.to_string()))?, lost_faces)
         }
         Geometry::PolyMesh(mesh) => {
-            let faces: Vec<u32> =
-                (0..mesh.face_count() as u32).filter(|&face| whole(mesh.face(face as usize))).collect();
-            let wedges: Vec<u32> =
-                faces.iter().flat_map(|&face| mesh.wedges(face as usize)).map(|wedge| wedge as u32).collect();
-            let mut starts = vec![0];
-            let mut corners = Vec::with_capacity(wedges.len());
-            for &face in &faces {
-                corners.extend(mesh.face(face as usize).iter().map(|&corner| renumbered[corner as usize]));
-                starts.push(corners.len() as u32);
-            }
+            let whole = |face: &u32| mesh.face(*face as usize).iter().all(finite);
+            let faces: Vec<u32> = (0..mesh.face_count() as u32).filter(whole).collect();
             let lost_faces = mesh.face_count() - faces.len();
-            let (attributes, _) = carry(mesh.attributes(), &origins(kept, faces, wedges));
-            let mesh = PolyMesh::with_attributes(positions, starts, corners, attributes);
-            (mesh.map_err(|error| wrong(error.to_string()))?.into(), lost, lost_faces)
-        }
-        Geometry::PointCloud(cloud) => {
-            let mut finite = PointCloud::new(positions);
-            for column in cloud.attributes() {
-                finite.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
-            }
-            (finite.into(), lost, 0)
-        }
-        Geometry::Polyline(line) => {
-            let mut finite = Polyline::new(positions, line.is_closed());
-            for column in line.attributes() {
-                finite.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
-            }
-            (finite.into(), lost, lost)
+            (cut(geometry, kept, faces, &new_of_old).map_err(|error| wrong(error.to_string()))?, lost_faces)
         }
         _ => return Ok(None),
-    }))
+    };
+    Ok(rest.map(|rest| (rest, lost, lost_faces)))
 }
 
-fn origins(vertices: Vec<u32>, faces: Vec<u32>, wedges: Vec<u32>) -> MeshOrigins {
-    MeshOrigins { vertex: Origins::Copies(vertices), face: Origins::Copies(faces), wedge: Origins::Copies(wedges) }
+/// The vertices that are kept with the edges between them, and how many edges are not.
+fn finite_graph(
+    graph: &GeometricGraph,
+    kept: &[u32],
+    new_of_old: &[u32],
+) -> Result<(GeometricGraph, usize), ReadError> {
+    let wrong = |error: String| Fault::new("E-read-elements", Place::Whole, error, "a mesh");
+    let whole = |edge: &u32| graph.edges()[*edge as usize].iter().all(|&end| new_of_old[end as usize] != u32::MAX);
+    let edges: Vec<u32> = (0..graph.edges().len() as u32).filter(whole).collect();
+    let ends = |&edge: &u32| graph.edges()[edge as usize].map(|end| new_of_old[end as usize]);
+    let positions = kept.iter().map(|&vertex| graph.positions()[vertex as usize]).collect();
+    let rest = GeometricGraph::try_new(positions, edges.iter().map(ends).collect());
+    let mut rest = rest.map_err(|error| wrong(error.to_string()))?;
+    for column in graph.vertex_attributes() {
+        rest.insert_vertex_attribute(column.gathered(kept)).map_err(|error| wrong(error.to_string()))?;
+    }
+    for list in graph.vertex_attributes().lists() {
+        rest.insert_vertex_list(list.gathered(kept)).map_err(|error| wrong(error.to_string()))?;
+    }
+    for column in graph.edge_attributes() {
+        rest.insert_edge_attribute(column.gathered(&edges)).map_err(|error| wrong(error.to_string()))?;
+    }
+    for list in graph.edge_attributes().lists() {
+        rest.insert_edge_list(list.gathered(&edges)).map_err(|error| wrong(error.to_string()))?;
+    }
+    let lost = graph.edges().len() - edges.len();
+    Ok((rest, lost))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shapeloom_mesh::{Column, Domain};
+    use shapeloom_mesh::{Column, Domain, PolyMesh, Polyline, TriMesh};
     use shapeloom_shape::Part;
 
     #[test]
@@ -241,5 +257,11 @@ mod tests {
         assert_eq!(labels(Domain::Face, "f"), shapeloom_mesh::Values::U32(vec![8]));
         assert_eq!(labels(Domain::Wedge, "w"), shapeloom_mesh::Values::U32(vec![3, 4, 5, 6]));
         assert_eq!(findings.iter().next().unwrap().code, "W-read-dropped");
+        // A line without its second point is a point and a segment.
+        let line = Polyline::new(vec![DVec3::ZERO, DVec3::NAN, DVec3::X, DVec3::Y], false);
+        let mut shape = Shape::new(Part::new(line));
+        drop_non_finite(&mut shape, &mut findings).unwrap();
+        let Geometry::GeometricGraph(graph) = &*shape.parts[0].geometry else { panic!("a graph") };
+        assert_eq!((graph.positions().len(), graph.edges()), (3, &[[1, 2]][..]));
     }
 }

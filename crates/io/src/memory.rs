@@ -46,6 +46,16 @@ pub(crate) fn make_room<T>(memory: &mut Memory<'_>, vector: &mut Vec<T>, more: u
     Ok(())
 }
 
+impl<'e> Memory<'e> {
+    /// Holds what others have reserved.
+    pub(crate) fn adopt(&mut self, others: impl IntoIterator<Item = Memory<'e>>) {
+        for other in others {
+            self.held.extend(other.held);
+            self.total += other.total;
+        }
+    }
+}
+
 /// A vector that reserves memory before it grows.
 #[derive(Debug)]
 pub(crate) struct Growing<T>(Vec<T>);
@@ -106,6 +116,23 @@ impl<T> Growing<T> {
     #[cold]
     fn grow(&mut self, memory: &mut Memory<'_>, more: usize) -> Result<(), OverBudget> {
         make_room(memory, &mut self.0, more)
+    }
+
+    /// Adds the elements of another vector; that one itself where this is empty.
+    pub(crate) fn append(&mut self, memory: &mut Memory<'_>, other: Self) -> Result<(), OverBudget>
+    where
+        T: Copy,
+    {
+        if self.0.is_empty() {
+            *self = other;
+            return Ok(());
+        }
+        self.extend(memory, &other.0)
+    }
+
+    /// Forgets all but the first elements; the memory stays.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.0.truncate(count);
     }
 
     pub(crate) fn as_slice(&self) -> &[T] {

@@ -29,13 +29,25 @@ impl<'o> Sink<'o> {
     /// Adds what `put` appends to the block: for pieces that are formatted in place.
     #[inline]
     pub(crate) fn piece(&mut self, put: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
-        put(&mut self.block);
-        if self.block.len() >= BLOCK { self.pass_on() } else { Ok(()) }
+        put(self.block());
+        self.spill()
     }
 
     pub(crate) fn text(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteError> {
         self.block.write_fmt(text)?;
         self.bytes(&[])
+    }
+
+    /// The block, to append to; then call [`Sink::spill`].
+    #[inline]
+    pub(crate) fn block(&mut self) -> &mut Vec<u8> {
+        &mut self.block
+    }
+
+    /// Passes the block on if it is full.
+    #[inline]
+    pub(crate) fn spill(&mut self) -> Result<(), WriteError> {
+        if self.block.len() >= BLOCK { self.pass_on() } else { Ok(()) }
     }
 
     pub(crate) fn finish(mut self) -> Result<(), WriteError> {

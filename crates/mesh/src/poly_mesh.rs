@@ -155,6 +155,11 @@ impl PolyMesh {
         self.attributes.of_mut(domain).insert(column)
     }
 
+    /// Takes a column out.
+    pub fn remove_attribute(&mut self, domain: Domain, name: &str) -> Option<Column> {
+        self.attributes.of_mut(domain).remove(name)
+    }
+
     /// Adds a column of lists.
     ///
     /// # Errors

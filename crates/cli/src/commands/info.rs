@@ -5,16 +5,23 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 use shapeloom_core::Exec;
 use shapeloom_mesh::{Attributes, Domain, MeshAttributes, PolyMesh, TriMesh};
-use shapeloom_shape::{Geometry, Part, Shape};
+use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use crate::account;
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
 use crate::input;
 use crate::session::Session;
+use crate::settings::Settings;
 
 pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let settings = Settings::sort(&arguments.settings);
+    settings.no_writing()?;
+    let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
+    if let Some((key, _)) = settings.others.first() {
+        let message = format!("found --set {key}, expected an option of the input");
+        return Err(Failure::usage("E-usage-setting", message));
+    }
     let mut object = describe(&input.read.shape, &session.exec())?;
     object.insert("schema".into(), json!("shapeloom.info/1"));
     object.insert("file".into(), json!(input.name));
@@ -35,7 +42,8 @@ fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
         _ => "mixed",
     };
     object.insert("kind".into(), json!(kind));
-    let mut totals = Totals::default();
+    let meshes = kinds.iter().any(|kind| matches!(kind, Kind::TriMesh | Kind::PolyMesh));
+    let mut totals = Totals { meshes, ..Totals::default() };
     let mut parts = Vec::new();
     for part in &shape.parts {
         exec.check()?;
@@ -71,6 +79,7 @@ fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
 /// Counts that add up over parts; those of kinds that do not occur stay away.
 #[derive(Default)]
 struct Totals {
+    meshes: bool,
     counts: Map<String, Value>,
     area: Option<f64>,
     volume: Option<f64>,
@@ -146,8 +155,11 @@ impl Totals {
                 self.attributes("vertex", line.attributes());
             }
             Geometry::GeometricGraph(graph) => {
-                self.count(&mut object, "vertices", graph.positions().len());
-                self.count(&mut object, "edges", graph.edges().len());
+                // Beside meshes the totals are those of the meshes.
+                let (vertices, edges) =
+                    if self.meshes { ("graph_vertices", "graph_edges") } else { ("vertices", "edges") };
+                self.count(&mut object, vertices, graph.positions().len());
+                self.count(&mut object, edges, graph.edges().len());
                 object.insert("length".into(), account::number(graph.length()));
                 self.attributes("vertex", graph.vertex_attributes());
                 self.attributes("edge", graph.edge_attributes());
@@ -244,4 +256,35 @@ fn words(object: &Map<String, Value>) -> String {
         }
     }
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shapeloom_core::glam::DVec3;
+    use shapeloom_mesh::{Column, GeometricGraph, ListColumn, Values};
+    use shapeloom_shape::Table;
+
+    #[test]
+    fn graphs_lists_tables_and_comments_are_told() {
+        let mut graph = GeometricGraph::try_new(vec![DVec3::ZERO, DVec3::X], vec![[0, 1]]).unwrap();
+        graph.insert_edge_attribute(Column::labels("street", vec![7])).unwrap();
+        let houses = ListColumn::try_new("houses", vec![0, 2, 3], Values::U8(vec![1, 2, 3])).unwrap();
+        graph.insert_vertex_list(houses).unwrap();
+        let mut columns = Attributes::new(4);
+        columns.insert(Column::labels("size", vec![0; 4])).unwrap();
+        let tables = vec![Table { name: "rows".into(), columns }];
+        let shape = Shape { tables, comments: vec!["made by hand".into()], ..Shape::new(Part::new(graph)) };
+        let told = Value::Object(describe(&shape, &Exec::default()).unwrap());
+        assert_eq!((&told["kind"], &told["edges"]), (&json!("geometric-graph"), &json!(1)));
+        assert_eq!(
+            told["attributes"],
+            json!([
+                {"domain": "edge", "name": "street", "width": 1, "type": "u32"},
+                {"domain": "vertex", "name": "houses", "type": "list of u8"}
+            ])
+        );
+        assert_eq!(told["tables"], json!([{"name": "rows", "rows": 4, "columns": ["size"]}]));
+        assert_eq!(told["comments"], json!(["made by hand"]));
+    }
 }

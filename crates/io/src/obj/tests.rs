@@ -94,9 +94,10 @@ fn texture_coordinates_and_normals_are_written_once() {
         [
             "placements of 1 parts",
             "1 instances of shared geometries",
+            "material name \"\"",
             "material \"\"",
-            "part name \" a\\nb \"",
             "face attribute \"patch\"",
+            "part name \" a\\nb \"",
         ]
     );
 }

@@ -1,17 +1,11 @@
 //! Colours: linear in shapes where they are fractions, sRGB in files (IEC 61966-2-1).
 
 use super::types::Type;
-
-/// The sRGB value of a linear intensity.
-pub(crate) fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
-}
+use crate::color::{self, srgb};
 
 /// The linear intensity of an sRGB value; negative ones mirror positive ones.
 pub(super) fn linear(srgb: f64) -> f64 {
-    let size = srgb.abs();
-    let linear = if size <= 0.040_45 { size / 12.92 } else { ((size + 0.055) / 1.055).powf(2.4) };
-    linear.copysign(srgb)
+    color::linear(srgb.abs()).copysign(srgb)
 }
 
 /// Values of both pieces of the curve: the published ones overlap a little where they meet.

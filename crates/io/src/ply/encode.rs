@@ -1,6 +1,6 @@
 //! Numbers laid down in a file.
 
-use crate::text::{print_f32, print_f64, print_whole};
+use crate::text::{push_integer, push_number, push_single};
 
 /// A number that properties have.
 pub(super) trait Written: Copy {
@@ -32,14 +32,14 @@ macro_rules! written {
 }
 
 written!(
-    i8: |value, out| print_whole(i64::from(value), out),
-    u8: |value, out| print_whole(i64::from(value), out),
-    i16: |value, out| print_whole(i64::from(value), out),
-    u16: |value, out| print_whole(i64::from(value), out),
-    i32: |value, out| print_whole(i64::from(value), out),
-    u32: |value, out| print_whole(i64::from(value), out),
-    f32: print_f32,
-    f64: print_f64
+    i8: |value, out| push_integer(out, i64::from(value)),
+    u8: |value, out| push_integer(out, i64::from(value)),
+    i16: |value, out| push_integer(out, i64::from(value)),
+    u16: |value, out| push_integer(out, i64::from(value)),
+    i32: |value, out| push_integer(out, i64::from(value)),
+    u32: |value, out| push_integer(out, i64::from(value)),
+    f32: |value, out| push_single(out, value),
+    f64: |value, out| push_number(out, value)
 );
 
 /// How numbers are laid down.

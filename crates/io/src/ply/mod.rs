@@ -29,7 +29,6 @@ mod tests;
 mod types;
 mod write;
 
-pub(crate) use color::srgb;
 use shapeloom_shape::Kind;
 
 use crate::{Format, Keeps, Precision, Sniff};

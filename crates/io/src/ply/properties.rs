@@ -2,9 +2,10 @@
 
 use shapeloom_mesh::{Attributes, COLOR, Column, ListColumn, NORMAL, TEXCOORD, Values};
 
-use super::color::{fraction, fraction_type, srgb};
+use super::color::{fraction, fraction_type};
 use super::encode::{Laid, Written};
 use super::types::{Type, with_values};
+use crate::color::srgb;
 use crate::placed::Losses;
 
 /// Columns of the file, and lists behind them.

@@ -7,6 +7,7 @@ use shapeloom_mesh::Values;
 use super::header::Element;
 use super::plan::Plan;
 use super::types::{Type, with_values};
+use crate::audit::DROP_ADVICE;
 use crate::faces::Faces;
 use crate::memory::{Memory, make_room};
 use crate::{Fault, ReadError};
@@ -118,9 +119,7 @@ pub(super) fn index_fault(place: Place, row: usize, found: impl ToString, vertic
 
 /// A vertex that is nowhere. `place` is that of the row.
 pub(super) fn finite_fault(place: Place, row: usize, found: String) -> Box<Fault> {
-    Fault::new("E-ply-finite", place, found, "finite coordinates")
-        .within(format!("vertex {row}"))
-        .advice("read with drop_non_finite to leave such vertices out")
+    Fault::new("E-ply-finite", place, found, "finite coordinates").within(format!("vertex {row}")).advice(DROP_ADVICE)
 }
 
 /// A face of more corners than the limits allow.

@@ -4,11 +4,13 @@ mod decimal;
 mod lines;
 mod numbers;
 mod pieces;
-mod print;
 mod scanner;
+mod shortest;
 
 pub use lines::{Line, Lines, Text, Token, Tokens, quoted};
-pub use numbers::{CountFault, NumberFault, parse_count, parse_number, shortest};
+pub use numbers::{CountFault, NumberFault, parse_count, parse_number};
+#[cfg(test)]
+pub(crate) use pieces::cut;
 pub(crate) use pieces::{never_joined, pieces};
-pub(crate) use print::{print_f32, print_f64, print_whole};
-pub(crate) use scanner::{Scanner, in_lines, is_blank, line_at, line_place, plain_text};
+pub(crate) use scanner::{Scanner, end_place, in_lines, is_blank, line_at, line_place, plain_text};
+pub use shortest::{push_count, push_integer, push_number, push_single, shortest};

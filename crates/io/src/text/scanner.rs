@@ -159,6 +159,26 @@ impl<'a> Scanner<'a> {
         Ok(value)
     }
 
+    /// A whole number that may be negative and need not end its word: its size and whether it is negative. Passes over
+    /// it.
+    ///
+    /// # Errors
+    /// No digit follows, or more than 19; it stands where it stood.
+    #[inline]
+    pub(crate) fn signed_part(&mut self) -> Result<(u64, bool), CountFault> {
+        let negative = self.peek() == Some(b'-');
+        let first = self.at + usize::from(negative);
+        let (value, end) = digits(self.text, first, 0);
+        match end - first {
+            0 => Err(CountFault::Syntax),
+            1..=19 => {
+                self.at = end;
+                Ok((value, negative))
+            }
+            _ => Err(CountFault::Overflow),
+        }
+    }
+
     #[inline]
     fn ends_word(&self, taken: usize) -> bool {
         match self.text.get(self.at + taken) {
@@ -220,12 +240,20 @@ pub(crate) fn in_lines(text: &[u8], mut fault: Box<Fault>) -> Box<Fault> {
     fault
 }
 
-/// An offset made a line of its text; other places stay.
+/// An offset made a line of its text; other places stay, and so does an offset where there is no text.
 pub(crate) fn line_place(text: &[u8], place: Place) -> Place {
     match place {
-        Place::Byte(offset) => Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX))),
+        Place::Byte(offset) if !text.is_empty() => {
+            Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX)))
+        }
         place => place,
     }
+}
+
+/// Where a text ends: the line of its last byte, or the next one where that ends its line.
+pub(crate) fn end_place(text: &[u8]) -> Place {
+    let last = line_at(text, text.len());
+    Place::line(if matches!(text.last(), Some(b'\n' | b'\r')) { last + 1 } else { last })
 }
 
 /// A text without its byte order mark, within the limits of lines.
