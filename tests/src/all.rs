@@ -8,6 +8,7 @@ mod between_formats;
 mod codes;
 mod collection;
 mod collection_obj;
+mod collection_ply;
 mod command_line;
 mod documents;
 #[path = "../fuzz/entry.rs"]
@@ -18,6 +19,7 @@ mod laws;
 mod malformed;
 mod malformed_gltf;
 mod malformed_obj;
+mod malformed_ply;
 mod mutations;
 mod oracles;
 mod peer_gltf;

@@ -25,10 +25,17 @@ pub(crate) fn degenerate_faces(
     place: impl Fn(usize) -> Place,
 ) -> Result<(), Stop> {
     let (count, first) = match geometry {
-        Geometry::TriMesh(mesh) => find(exec, mesh.triangles().len(), |face| {
-            let [a, b, c] = mesh.triangles()[face];
-            a == b || b == c || c == a || on_one_line(&mesh.corners(face))
-        })?,
+        Geometry::TriMesh(mesh) => {
+            let (positions, triangles) = (mesh.positions(), mesh.triangles());
+            find(exec, triangles.len(), |face| {
+                let corners = triangles[face];
+                let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+                // By far the most faces are triangles with an area.
+                let cross = (b - a).cross(c - a);
+                let has_area = (cross.x != 0.0) | (cross.y != 0.0) | (cross.z != 0.0);
+                !has_area && (repeats(&corners) || on_one_line(&[a, b, c]))
+            })?
+        }
         Geometry::PolyMesh(mesh) => find(exec, mesh.face_count(), |face| {
             let corners = mesh.face(face);
             repeats(corners) || {
@@ -84,13 +91,6 @@ fn on_one_line(points: &[DVec3]) -> bool {
     let Some((&first, others)) = points.split_first() else {
         return true;
     };
-    if let [b, c] = *others {
-        // By far the most faces are triangles with an area.
-        let cross = (b - first).cross(c - first);
-        if cross.x != 0.0 || cross.y != 0.0 || cross.z != 0.0 {
-            return false;
-        }
-    }
     // Against the corner that is farthest along an axis, in units in which it is one away: nothing underflows then.
     let reach = |point: &DVec3| (*point - first).abs().max_element();
     let Some(far) =

@@ -102,6 +102,49 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-obj-row", "A vertex, normal or texture coordinate has too few or too many numbers."),
     ("E-obj-truncated", "The file ends within a free-form curve or surface."),
+    (
+        "E-ply-claim",
+        "The header of a PLY file promises more rows than the bytes after it have room for. The file was cut off, or its header is wrong. Nothing is allocated because a header says so.",
+    ),
+    (
+        "E-ply-count",
+        "The number of rows of an element, or the length of a list, is a whole number from 0, in digits alone.",
+    ),
+    (
+        "E-ply-duplicate",
+        "An element, a property of an element or the format is there twice, so that one of them has the wrong name.",
+    ),
+    (
+        "E-ply-finite",
+        "A coordinate of a vertex is infinite, no number, or larger than its type can hold. Repair the program that wrote the file, or leave such vertices out (drop_non_finite).",
+    ),
+    (
+        "E-ply-format",
+        "The header says before its elements how the numbers are laid down: \"format ascii 1.0\", \"format binary_little_endian 1.0\" or \"format binary_big_endian 1.0\".",
+    ),
+    (
+        "E-ply-header",
+        "A line of the header is not one of those that PLY has, or stands in the wrong place; or vertices have no x, y and z.",
+    ),
+    (
+        "E-ply-index",
+        "A face, edge or strip names a vertex that does not exist. Vertices are counted from 0. In a binary file the byte order may be another one than the header says.",
+    ),
+    ("E-ply-limit", "The file has more elements, properties or corners of a face than the reader's limits allow."),
+    ("E-ply-magic", "A PLY file begins with the line \"ply\". This is another kind of file, or its start is damaged."),
+    (
+        "E-ply-number",
+        "A value was expected and something else was found, or a whole number beyond the range of its type.",
+    ),
+    (
+        "E-ply-row",
+        "A line of the body has more or fewer values than the element has properties. Each row has a line of its own; a list is its length and then its numbers.",
+    ),
+    (
+        "E-ply-truncated",
+        "The file ends within its header or its body. It was cut off, or its header promises too much.",
+    ),
+    ("E-ply-type", "A property has a type that PLY does not have, or the length of a list is no whole number."),
     ("E-read-elements", "There are more elements than 32 bits can tell apart. Cut the shape into parts."),
     ("E-read-format", "Files of this format are recognized and written, but not read yet."),
     ("E-read-io", "The input could not be read to its end."),
@@ -173,6 +216,25 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-obj-statement", "A line begins with a word that OBJ does not have."),
     ("W-obj-texture", "A texture that a material names is not beside the file. Its name was kept."),
     ("W-obj-weight", "A vertex has the weight 0. Weights mean nothing for polygons; they are kept as a column."),
+    (
+        "W-ply-degenerate",
+        "Faces, or strips, of fewer than three corners were left out; faces that name a vertex twice or have no area were kept.",
+    ),
+    (
+        "W-ply-edges",
+        "The file has edges beside its faces. They became a part of their own, with copies of the vertices that they join.",
+    ),
+    ("W-ply-empty", "The file has no vertices: the mesh is empty."),
+    (
+        "W-ply-table",
+        "An element that is called as faces, edges or strips are does not say which vertices it joins. It was kept as a table.",
+    ),
+    (
+        "W-ply-texcoord",
+        "A list of texture coordinates does not have two numbers for each corner of its face. It was kept as lists of the faces.",
+    ),
+    ("W-ply-trailing", "Data follows after the last row that the header promises. It was passed over."),
+    ("W-ply-version", "The format has another version than 1.0, the only one there is. The file was read as that."),
     ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
 ];
 

@@ -40,6 +40,19 @@ impl Faces {
         }
     }
 
+    /// Adds many triangles.
+    #[inline]
+    pub(crate) fn extend_triangles(
+        &mut self,
+        memory: &mut Memory<'_>,
+        mut triangles: impl ExactSizeIterator<Item = [u32; 3]>,
+    ) -> Result<(), ReadError> {
+        match &mut self.polygons {
+            None => Ok(self.triangles.extend_exact(memory, triangles)?),
+            Some(polygons) => triangles.try_for_each(|corners| polygons.push(memory, &corners)),
+        }
+    }
+
     /// Adds a face of at least three corners.
     #[inline]
     pub(crate) fn push(&mut self, memory: &mut Memory<'_>, corners: &[u32]) -> Result<(), ReadError> {

@@ -35,6 +35,17 @@ impl<'e> Memory<'e> {
     }
 }
 
+/// Makes room for more elements in a plain vector, as [`Growing`] does in its own.
+#[inline]
+pub(crate) fn make_room<T>(memory: &mut Memory<'_>, vector: &mut Vec<T>, more: usize) -> Result<(), OverBudget> {
+    if vector.capacity() - vector.len() < more {
+        let more = more.max(vector.len()).max(64);
+        memory.take(more, size_of::<T>())?;
+        vector.reserve_exact(more);
+    }
+    Ok(())
+}
+
 impl<'e> Memory<'e> {
     /// Holds what others have reserved.
     pub(crate) fn adopt(&mut self, others: impl IntoIterator<Item = Memory<'e>>) {
@@ -88,12 +99,23 @@ impl<T> Growing<T> {
         Ok(())
     }
 
+    /// Adds the elements of an iterator that knows how many there are.
+    #[inline]
+    pub(crate) fn extend_exact(
+        &mut self,
+        memory: &mut Memory<'_>,
+        elements: impl ExactSizeIterator<Item = T>,
+    ) -> Result<(), OverBudget> {
+        if self.0.capacity() - self.0.len() < elements.len() {
+            self.grow(memory, elements.len())?;
+        }
+        self.0.extend(elements);
+        Ok(())
+    }
+
     #[cold]
     fn grow(&mut self, memory: &mut Memory<'_>, more: usize) -> Result<(), OverBudget> {
-        let more = more.max(self.0.len()).max(64);
-        memory.take(more, size_of::<T>())?;
-        self.0.reserve_exact(more);
-        Ok(())
+        make_room(memory, &mut self.0, more)
     }
 
     /// Adds the elements of another vector; that one itself where this is empty.

@@ -26,6 +26,13 @@ impl<'o> Sink<'o> {
         if self.block.len() >= BLOCK { self.pass_on() } else { Ok(()) }
     }
 
+    /// Adds what `put` appends to the block: for pieces that are formatted in place.
+    #[inline]
+    pub(crate) fn piece(&mut self, put: impl FnOnce(&mut Vec<u8>)) -> Result<(), WriteError> {
+        put(self.block());
+        self.spill()
+    }
+
     pub(crate) fn text(&mut self, text: fmt::Arguments<'_>) -> Result<(), WriteError> {
         self.block.write_fmt(text)?;
         self.bytes(&[])

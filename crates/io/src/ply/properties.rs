@@ -1,70 +1,39 @@
 //! Columns as PLY properties.
 
-use std::sync::Arc;
+use shapeloom_mesh::{Attributes, COLOR, Column, ListColumn, NORMAL, TEXCOORD, Values};
 
-use shapeloom_mesh::{Attributes, COLOR, Column, Domain, NORMAL, TEXCOORD, Values};
-use shapeloom_shape::Geometry;
-
+use super::color::{fraction, fraction_type};
+use super::encode::{Laid, Written};
+use super::types::{Type, with_values};
 use crate::color::srgb;
-use crate::placed::{Losses, columns_of};
+use crate::placed::Losses;
 
-/// The type of a property.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Type {
-    Char,
-    Uchar,
-    Short,
-    Ushort,
-    Int,
-    Uint,
-    Float,
-    Double,
-}
-
-impl Type {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Char => "char",
-            Self::Uchar => "uchar",
-            Self::Short => "short",
-            Self::Ushort => "ushort",
-            Self::Int => "int",
-            Self::Uint => "uint",
-            Self::Float => "float",
-            Self::Double => "double",
-        }
-    }
-
-    /// Appends a number of this type.
-    pub fn put(self, number: f64, out: &mut Vec<u8>) {
-        match self {
-            Self::Char => out.extend_from_slice(&(number as i8).to_le_bytes()),
-            Self::Uchar => out.push(number as u8),
-            Self::Short => out.extend_from_slice(&(number as i16).to_le_bytes()),
-            Self::Ushort => out.extend_from_slice(&(number as u16).to_le_bytes()),
-            Self::Int => out.extend_from_slice(&(number as i32).to_le_bytes()),
-            Self::Uint => out.extend_from_slice(&(number as u32).to_le_bytes()),
-            Self::Float => out.extend_from_slice(&(number as f32).to_le_bytes()),
-            Self::Double => out.extend_from_slice(&number.to_le_bytes()),
-        }
-    }
-
-    /// The narrowest floating type that holds all numbers.
-    pub fn of_floats(numbers: impl IntoIterator<Item = f64>) -> Self {
-        let exact = |number: f64| number.is_nan() || f64::from(number as f32) == number;
-        if numbers.into_iter().all(exact) { Self::Float } else { Self::Double }
-    }
+/// Columns of the file, and lists behind them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Properties {
+    pub columns: Vec<Property>,
+    pub lists: Vec<ListProperty>,
 }
 
 /// A column of the file.
 #[derive(Clone, Debug)]
 pub(super) struct Property {
     /// The name of the column in the shape.
-    pub column: String,
+    column: String,
     /// The names of its numbers in the file.
-    pub names: Vec<String>,
-    pub kind: Type,
+    names: Vec<String>,
+    kind: Type,
     stored: Stored,
+}
+
+/// Lists of the file.
+#[derive(Clone, Debug)]
+pub(super) struct ListProperty {
+    /// The name of the column in the shape.
+    column: String,
+    name: String,
+    count: Type,
+    kind: Type,
 }
 
 /// What numbers become on their way into the file.
@@ -74,106 +43,211 @@ enum Stored {
     Same,
     /// Linear intensities become sRGB bytes.
     SrgbBytes,
-    /// Whole numbers up to 65535 become bytes.
-    HighBytes,
+    /// Linear intensities become fractions in sRGB.
+    SrgbFractions,
 }
 
-impl Property {
-    /// One number of an element as the file has it.
-    pub fn number(&self, column: &Column, element: usize, component: usize) -> f64 {
-        let number = column.number(element, component);
-        match self.stored {
-            Stored::Same => number,
-            Stored::HighBytes => (number / 257.0).round(),
-            Stored::SrgbBytes => {
-                let fraction = number.clamp(0.0, 1.0).max(0.0);
-                (255.0 * if component < 3 { srgb(fraction) } else { fraction }).round()
-            }
-        }
-    }
-}
+/// The columns of one part, or of a table: how many elements, and what they have.
+pub(super) type Set<'a> = (usize, Option<&'a Attributes>);
 
-/// The properties for the columns that all of these geometries have; the others are lost.
-pub(super) fn properties(geometries: &[Arc<Geometry>], domain: Domain, losses: &mut Losses) -> Vec<Property> {
-    let mut taken: Vec<String> = match domain {
-        Domain::Vertex => ["x", "y", "z"].map(str::to_owned).to_vec(),
-        _ => ["vertex_indices", TEXCOORD].map(str::to_owned).to_vec(),
-    };
-    let having: Vec<&Arc<Geometry>> =
-        geometries.iter().filter(|geometry| columns_of(geometry, domain).map_or(0, Attributes::len) > 0).collect();
-    let mut properties: Vec<Property> = Vec::new();
-    for geometry in &having {
-        for column in columns_of(geometry, domain).into_iter().flatten() {
-            if properties.iter().any(|property| property.column == column.name()) {
+impl Properties {
+    /// The properties for the columns that all sets with elements have; the others are lost. `taken` are the names that
+    /// the element has already; `label` is what a loss calls the elements.
+    pub fn new(sets: &[Set<'_>], label: &str, taken: &[&str], losses: &mut Losses) -> Self {
+        let mut taken: Vec<String> = taken.iter().map(|name| (*name).to_owned()).collect();
+        let having: Vec<Option<&Attributes>> =
+            sets.iter().filter(|(count, _)| *count > 0).map(|(_, set)| *set).collect();
+        let mut properties = Self::default();
+        let mut lose = |name: &str, why: &str| losses.push(format!("{label} attribute \"{name}\""), why);
+        for column in having.iter().copied().flatten().flat_map(|columns| columns.iter()) {
+            if properties.columns.iter().any(|property| property.column == column.name()) {
                 continue;
             }
-            let everywhere: Option<Vec<&Column>> = having
-                .iter()
-                .map(|other| columns_of(other, domain).and_then(|columns| columns.get(column.name())))
-                .collect();
+            let everywhere: Option<Vec<&Column>> =
+                having.iter().map(|other| other.and_then(|set| set.get(column.name()))).collect();
             let alike = everywhere.filter(|all| {
                 all.iter().all(|other| {
                     other.width() == column.width() && other.values().type_name() == column.values().type_name()
                 })
             });
             let Some(all) = alike else {
-                losses.column(domain, column.name(), "not every part has it in the same type");
+                lose(column.name(), "not every part has it in the same type");
                 continue;
             };
-            match property(&all, domain, losses) {
+            match property(&all, &mut lose) {
                 Some(property) if property.names.iter().all(|name| !taken.contains(name)) => {
                     taken.extend(property.names.iter().cloned());
-                    properties.push(property);
+                    properties.columns.push(property);
                 }
-                Some(_) => losses.column(domain, column.name(), "another property of the file has its name"),
-                None => losses.column(domain, column.name(), "PLY properties are numbers, not text"),
+                Some(_) => lose(column.name(), "another property of the file has its name"),
+                None => lose(column.name(), "PLY properties are numbers, not text"),
+            }
+        }
+        for list in having.iter().copied().flatten().flat_map(|columns| columns.lists()) {
+            if properties.lists.iter().any(|property| property.column == list.name()) {
+                continue;
+            }
+            let everywhere: Option<Vec<&ListColumn>> =
+                having.iter().map(|other| other.and_then(|set| set.list(list.name()))).collect();
+            let same = |other: &&ListColumn| other.values().type_name() == list.values().type_name();
+            let Some(all) = everywhere.filter(|all| all.iter().all(same)) else {
+                lose(list.name(), "not every part has it in the same type");
+                continue;
+            };
+            let Some(kind) = Type::of_values(list.values()) else {
+                lose(list.name(), "PLY properties are numbers, not text");
+                continue;
+            };
+            let name = safe(list.name());
+            if name.is_empty() || taken.contains(&name) {
+                lose(list.name(), "another property of the file has its name");
+                continue;
+            }
+            if name != list.name() {
+                lose(list.name(), &format!("its name in the file is \"{name}\""));
+            }
+            taken.push(name.clone());
+            let most = all.iter().flat_map(|list| list.starts().windows(2)).map(|pair| pair[1] - pair[0]).max();
+            let count = count_type(most.unwrap_or(0) as usize);
+            properties.lists.push(ListProperty { column: list.name().to_owned(), name, count, kind });
+        }
+        properties
+    }
+
+    /// The lines of the header.
+    pub fn declare(&self, out: &mut String) {
+        for property in &self.columns {
+            for name in &property.names {
+                out.push_str(&format!("property {} {name}\n", property.kind.name()));
+            }
+        }
+        for list in &self.lists {
+            out.push_str(&format!("property list {} {} {}\n", list.count.name(), list.kind.name(), list.name));
+        }
+    }
+
+    /// The values of these properties in a set.
+    pub fn of<'a>(&'a self, set: Option<&'a Attributes>) -> Sources<'a> {
+        let columns = self.columns.iter().filter_map(|property| Some((property, set?.get(&property.column)?)));
+        let lists = self.lists.iter().filter_map(|property| Some((property, set?.list(&property.column)?)));
+        Sources { columns: columns.collect(), lists: lists.collect() }
+    }
+}
+
+/// Where the values of properties come from.
+pub(super) struct Sources<'a> {
+    columns: Vec<(&'a Property, &'a Column)>,
+    lists: Vec<(&'a ListProperty, &'a ListColumn)>,
+}
+
+impl Sources<'_> {
+    /// Appends the values of an element.
+    #[inline]
+    pub fn put<L: Laid>(&self, element: usize, out: &mut Vec<u8>) {
+        for (property, column) in &self.columns {
+            property.put::<L>(column, element, out);
+        }
+        for (property, list) in &self.lists {
+            let range = list.range(element);
+            put_count::<L>(property.count, range.len(), out);
+            with_values!(list.values(), values => put_all::<L, _>(values.get(range), out), ());
+        }
+    }
+}
+
+/// Appends the length of a list.
+#[inline]
+pub(super) fn put_count<L: Laid>(kind: Type, count: usize, out: &mut Vec<u8>) {
+    match kind {
+        Type::Uchar => L::put(count as u8, out),
+        _ => L::put(count as u32, out),
+    }
+}
+
+#[inline]
+fn put_all<L: Laid, T: Written>(values: Option<&[T]>, out: &mut Vec<u8>) {
+    values.unwrap_or(&[]).iter().for_each(|&value| L::put(value, out));
+}
+
+impl Property {
+    #[inline]
+    fn put<L: Laid>(&self, column: &Column, element: usize, out: &mut Vec<u8>) {
+        let width = column.width();
+        let range = element * width..(element + 1) * width;
+        match (self.stored, column.values()) {
+            (Stored::Same, Values::F64(values)) if self.kind == Type::Float => {
+                values.get(range).unwrap_or(&[]).iter().for_each(|&value| L::put(value as f32, out));
+            }
+            (Stored::Same, values) => {
+                with_values!(values, values => put_all::<L, _>(values.get(range), out), ());
+            }
+            (Stored::SrgbBytes, _) => {
+                for component in 0..width {
+                    let fraction = column.number(element, component).clamp(0.0, 1.0).max(0.0);
+                    L::put((255.0 * if component < 3 { srgb(fraction) } else { fraction }).round() as u8, out);
+                }
+            }
+            (Stored::SrgbFractions, _) => {
+                for component in 0..width {
+                    let number = column.number(element, component);
+                    let stored = if component < 3 { fraction(number) } else { number };
+                    if self.kind == Type::Float { L::put(stored as f32, out) } else { L::put(stored, out) }
+                }
             }
         }
     }
-    properties
 }
 
-fn property(columns: &[&Column], domain: Domain, losses: &mut Losses) -> Option<Property> {
+/// The type of the length of lists.
+pub(super) fn count_type(most: usize) -> Type {
+    if most <= usize::from(u8::MAX) { Type::Uchar } else { Type::Uint }
+}
+
+/// A name without white space, which ends names in a header.
+pub(super) fn safe(name: &str) -> String {
+    name.chars().map(|c| if c.is_whitespace() || c.is_control() { '_' } else { c }).collect()
+}
+
+fn property(columns: &[&Column], lose: &mut impl FnMut(&str, &str)) -> Option<Property> {
     let column = *columns.first()?;
     let floats = || {
         columns.iter().flat_map(|column| {
             (0..column.len() * column.width()).map(|i| column.number(i / column.width(), i % column.width()))
         })
     };
-    let kind = match column.values() {
-        Values::F32(_) => Type::Float,
-        Values::F64(_) => Type::of_floats(floats()),
-        Values::I8(_) => Type::Char,
-        Values::U8(_) => Type::Uchar,
-        Values::I16(_) => Type::Short,
-        Values::U16(_) => Type::Ushort,
-        Values::I32(_) => Type::Int,
-        Values::U32(_) => Type::Uint,
-        Values::Text { .. } => return None,
-    };
+    let kind = Type::of_values(column.values())?;
     let plain = Property { column: column.name().to_owned(), names: Vec::new(), kind, stored: Stored::Same };
     let named = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-    let floating = matches!(kind, Type::Float | Type::Double);
+    let narrow = || if kind == Type::Double { Type::of_floats(floats()) } else { kind };
     Some(match (column.name(), column.width()) {
-        (NORMAL, 3) => Property { names: named(&["nx", "ny", "nz"]), ..plain },
-        (TEXCOORD, 2) => Property { names: named(&["s", "t"]), ..plain },
-        (COLOR, width @ (3 | 4)) if floating || matches!(kind, Type::Uchar | Type::Ushort) => {
-            if kind != Type::Uchar {
-                losses.column(domain, COLOR, "colours were rounded to bytes, linear ones as sRGB");
-            }
+        (NORMAL, 3) if kind.is_floating() => Property { names: named(&["nx", "ny", "nz"]), kind: narrow(), ..plain },
+        (TEXCOORD, 2) if kind.is_floating() => Property { names: named(&["s", "t"]), kind: narrow(), ..plain },
+        (COLOR, width @ (3 | 4)) if kind.is_floating() || matches!(kind, Type::Uchar | Type::Ushort) => {
             let names = named(&["red", "green", "blue", "alpha"][..width]);
-            let stored = match kind {
-                Type::Uchar => Stored::Same,
-                Type::Ushort => Stored::HighBytes,
-                _ => Stored::SrgbBytes,
+            let (kind, stored) = match kind {
+                Type::Float => {
+                    lose(COLOR, "linear colours in single precision were rounded to bytes as sRGB");
+                    (Type::Uchar, Stored::SrgbBytes)
+                }
+                Type::Double => {
+                    let colors = fraction_type(columns.iter().flat_map(|column| {
+                        (0..column.len()).flat_map(move |i| (0..3).map(move |component| column.number(i, component)))
+                    }));
+                    let exact = |number: f64| number.is_nan() || f64::from(number as f32) == number;
+                    let mut alphas = columns.iter().flat_map(|column| {
+                        (0..column.len())
+                            .flat_map(move |i| (3..column.width()).map(move |alpha| column.number(i, alpha)))
+                    });
+                    (if alphas.all(exact) { colors } else { Type::Double }, Stored::SrgbFractions)
+                }
+                other => (other, Stored::Same),
             };
-            Property { names, kind: Type::Uchar, stored, ..plain }
+            Property { names, kind, stored, ..plain }
         }
         (name, width) => {
-            let safe: String =
-                name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '_' }).collect();
+            let safe = safe(name);
             if safe != name || safe.is_empty() {
-                losses.column(domain, name, format!("its name in the file is \"{safe}\""));
+                lose(name, &format!("its name in the file is \"{safe}\""));
             }
             if safe.is_empty() {
                 return None;
