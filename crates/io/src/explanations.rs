@@ -86,6 +86,31 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
      read alone so that nothing is beside it.",
     ),
     ("E-sibling-path", "The input names a file outside of its own folder. Such files are never opened."),
+    (
+        "E-stl-claim",
+        "The count of a binary STL file is larger than its number of bytes, so that it cannot be right. It may be \
+     in the other byte order, or the file may be no STL.",
+    ),
+    (
+        "E-stl-finite",
+        "A coordinate is infinite, no number, or larger than the largest double. Repair the program that wrote the \
+     file, or have vertices that are not finite left out.",
+    ),
+    (
+        "E-stl-limit",
+        "The file has more facets or solids than the reader's limits allow, or than 32 bits can count the corners \
+     of.",
+    ),
+    (
+        "E-stl-number",
+        "A coordinate was expected and something else was found. Numbers have a decimal point, never a comma.",
+    ),
+    (
+        "E-stl-row",
+        "Another word was expected here. A facet is: facet normal, outer loop, three times vertex with three \
+     numbers, endloop, endfacet.",
+    ),
+    ("E-stl-truncated", "The file ends before its last facet does. It was cut off; get it again."),
     ("E-text-encoding", "The text is in UTF-16 or UTF-32. Save it as UTF-8."),
     ("E-text-line", "A line is longer than the reader's limits allow. It may not be text at all."),
     (
@@ -126,6 +151,19 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
     ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
+    ("W-stl-color", "Some facets of a binary STL file have a colour and others have none. These were taken as white."),
+    ("W-stl-degenerate", "A facet has two equal corners, or its corners lie on one line. It was kept."),
+    ("W-stl-empty", "The file has no facets; the mesh is empty."),
+    (
+        "W-stl-normal",
+        "A stored normal is not three finite numbers. Stored normals are not kept: they follow from the corners.",
+    ),
+    (
+        "W-stl-solid",
+        "A solid begins or ends without the word that belongs there. The facets were read all the same; after the \
+     last one the file may be cut off.",
+    ),
+    ("W-stl-trailing", "More follows after the last facet. It was not read; the count may be too small."),
 ];
 
 /// The explanation of a code of this crate.

@@ -42,6 +42,7 @@ mod read;
 mod read_error;
 mod siblings;
 mod sink;
+mod stl;
 #[cfg(test)]
 mod test_data;
 mod write;

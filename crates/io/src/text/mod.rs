@@ -8,5 +8,7 @@ mod scanner;
 
 pub use lines::{Line, Lines, Text, Token, Tokens, quoted};
 pub use numbers::{CountFault, NumberFault, parse_count, parse_number, shortest};
+#[cfg(test)]
+pub(crate) use pieces::cut;
 pub(crate) use pieces::{never_joined, pieces};
-pub(crate) use scanner::{Scanner, in_lines, line_place, plain_text};
+pub(crate) use scanner::{Scanner, end_place, findings_in_lines, in_lines, line_place, plain_text};
