@@ -76,6 +76,38 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-gltf-uri", "An embedded buffer is not base64 data."),
     ("E-gltf-version", "Only version 2.0 of glTF is read."),
+    (
+        "E-off-claim",
+        "The counts of an OFF file, or the number of corners of a face, are more than the bytes that follow can \
+     hold. The file was cut off, or a number is wrong.",
+    ),
+    (
+        "E-off-color",
+        "A colour is three or four numbers, fractions from 0 or whole numbers from 0 to 255; one whole number is an \
+     index into a colour map.",
+    ),
+    ("E-off-count", "A count is below zero."),
+    ("E-off-dimension", "Only vertices of one to three coordinates are read. Project shapes of more dimensions first."),
+    (
+        "E-off-finite",
+        "A number of a vertex is infinite, no number, or larger than the largest double. Repair the program that \
+     wrote the file, or have vertices that are not finite left out.",
+    ),
+    ("E-off-header", "An OFF file begins with a keyword such as OFF, COFF or NOFF, or with its number of vertices."),
+    ("E-off-index", "A face names a vertex that does not exist. Vertices are counted from 0."),
+    ("E-off-limit", "The file has more vertices, faces or corners of one face than the reader's limits allow."),
+    (
+        "E-off-number",
+        "A number was expected and something else was found. Counts and the numbers of vertices are digits alone; \
+     numbers have a decimal point, never a comma.",
+    ),
+    (
+        "E-off-row",
+        "A line has too many or too few numbers. Each vertex and each face is on one line. Where the first line of \
+     the faces is named, the header may promise more vertices than are listed.",
+    ),
+    ("E-off-truncated", "The file ends before the numbers of vertices and faces that its header promises."),
+    ("E-off-weight", "A vertex of a 4OFF file has the homogeneous weight 0: it is infinitely far away."),
     ("E-read-elements", "There are more elements than 32 bits can tell apart. Cut the shape into parts."),
     ("E-read-format", "Files of this format are recognized and written, but not read yet."),
     ("E-read-io", "The input could not be read to its end."),
@@ -150,6 +182,18 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
+    (
+        "W-off-color",
+        "Something about the colours was guessed: what whole numbers mean, the colour of a face that has none among \
+     others that have one, or that columns are a colour though the keyword does not say so.",
+    ),
+    (
+        "W-off-degenerate",
+        "A face has fewer than three corners and was left out, or names a vertex twice or has no area and was kept.",
+    ),
+    ("W-off-empty", "The file has no vertices; the mesh is empty."),
+    ("W-off-header", "The number of vertices follows the keyword without a space."),
+    ("W-off-trailing", "More follows after the last face. It was not read; the number of faces may be too small."),
     ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
     ("W-stl-color", "Some facets of a binary STL file have a colour and others have none. These were taken as white."),
     ("W-stl-degenerate", "A facet has two equal corners, or its corners lie on one line. It was kept."),

@@ -35,6 +35,7 @@ mod format;
 mod gltf;
 mod memory;
 mod obj;
+mod off;
 mod options;
 mod placed;
 mod ply;
