@@ -13,6 +13,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 mod text;
+mod write;
 
 use shapeloom_shape::Kind;
 
@@ -33,7 +34,7 @@ pub(crate) const FORMAT: Format = Format {
     write_options: &["encoding"],
     sniff: |input| if header::begins(crate::detect::head(input)) { Sniff::Certain } else { Sniff::No },
     reads: Some(read),
-    writes: None,
+    writes: Some(write::write),
 };
 
 /// The face column of indices into a colour map that the file does not have.

@@ -11,6 +11,7 @@ mod read;
 #[cfg(test)]
 mod tests;
 mod weld;
+mod write;
 
 use shapeloom_shape::Kind;
 
@@ -31,7 +32,7 @@ pub(crate) const FORMAT: Format = Format {
     write_options: &["encoding"],
     sniff,
     reads: Some(read::read),
-    writes: None,
+    writes: Some(write::write),
 };
 
 /// Bytes before the facets of a binary file: a comment of 80, then the number of facets.

@@ -5,10 +5,13 @@ mod lines;
 mod numbers;
 mod pieces;
 mod scanner;
+mod shortest;
 
 pub use lines::{Line, Lines, Text, Token, Tokens, quoted};
-pub use numbers::{CountFault, NumberFault, parse_count, parse_number, shortest};
+pub use numbers::{CountFault, NumberFault, parse_count, parse_number};
 #[cfg(test)]
 pub(crate) use pieces::cut;
 pub(crate) use pieces::{never_joined, pieces};
 pub(crate) use scanner::{Scanner, end_place, findings_in_lines, in_lines, line_place, plain_text};
+pub use shortest::shortest;
+pub(crate) use shortest::{push_shortest, push_whole};

@@ -84,17 +84,6 @@ pub fn parse_count(token: &[u8]) -> Result<u64, CountFault> {
     })
 }
 
-/// The shortest decimal text that reads back to the same bits, with an exponent where that is shorter.
-pub fn shortest(value: f64) -> String {
-    let plain = value.to_string();
-    // Plain notation of ordinary numbers is never beaten by an exponent; skip writing it twice.
-    if plain.len() < 6 {
-        return plain;
-    }
-    let scientific = format!("{value:e}");
-    if scientific.len() < plain.len() { scientific } else { plain }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,20 +115,5 @@ mod tests {
         for text in ["", "-1", "+1", "1e3", "1.0", "0x1"] {
             assert_eq!(parse_count(text.as_bytes()), Err(CountFault::Syntax), "{text}");
         }
-    }
-
-    #[test]
-    fn shortest_text_reads_back_to_the_same_bits() {
-        // A linear congruential generator over all bit patterns.
-        let mut bits = 1u64;
-        for _ in 0..100_000 {
-            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let value = f64::from_bits(bits);
-            if value.is_finite() {
-                assert_eq!(parse_number(shortest(value).as_bytes()).map(f64::to_bits), Ok(bits));
-            }
-        }
-        assert_eq!([1e300, 1e-7, 1000.0, 0.1, -0.0].map(shortest), ["1e300", "1e-7", "1000", "0.1", "-0"]);
-        assert_eq!(shortest(1_000_000.0), "1e6");
     }
 }
