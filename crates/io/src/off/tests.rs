@@ -1,13 +1,13 @@
 //! Texts and bytes made by hand, and texts cut anywhere.
 
-use shapeloom_core::Place;
 use shapeloom_core::glam::DVec3;
-use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, TEXCOORD, Values};
-use shapeloom_shape::{Geometry, Kind};
+use shapeloom_core::{Affine, Deviation, Place, Report};
+use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, PointCloud, PolyMesh, TEXCOORD, Values};
+use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use super::FORMAT;
 use crate::placed::{columns_of, points_of};
-use crate::{ReadContext, ReadShape, read};
+use crate::{Encoding, ReadContext, ReadShape, WriteContext, WriteOptions, read};
 
 fn read_text(text: &str) -> ReadShape {
     read(text.as_bytes(), &FORMAT, &ReadContext::default()).unwrap_or_else(|error| panic!("{error}\n{text}"))
@@ -239,5 +239,131 @@ fn binary_files_are_big_endian() {
         // Of the three counts the first is named.
         let wanted = if at == 31 { 27 } else { at };
         assert_eq!(fault.place, Place::Byte(wanted as u64), "{code}");
+    }
+}
+
+fn written(shape: &Shape, encoding: Encoding) -> (Vec<u8>, Report) {
+    let context = WriteContext { options: WriteOptions { encoding, ..WriteOptions::default() }, ..Default::default() };
+    let mut out = Vec::new();
+    let report = crate::write(shape, &FORMAT, &context, &mut out).unwrap();
+    (out, report)
+}
+
+fn whats(report: &Report) -> Vec<&str> {
+    report.losses.iter().map(|loss| loss.what.as_str()).collect()
+}
+
+/// Two triangles and a square with every column that OFF takes, and some that it does not.
+fn painted(vertex_color: Values, face_color: Option<Values>) -> PolyMesh {
+    let positions = (0..5).map(|i| DVec3::new(f64::from(i) / 3.0, f64::from(i * i) * 1e-9, -0.0)).collect();
+    let faces: [&[u32]; 3] = [&[0, 1, 2], &[1, 2, 3, 4], &[0, 4, 3]];
+    let mut mesh = PolyMesh::from_faces(positions, &faces).unwrap();
+    let mut add = |domain, column| mesh.insert_attribute(domain, column).unwrap();
+    let normals: Vec<DVec3> = (0..5).map(|i| DVec3::new(0.1, 0.2, f64::from(i) / 7.0)).collect();
+    add(Domain::Vertex, Column::normals(NORMAL, &normals));
+    let width = vertex_color.len() / 5;
+    add(Domain::Vertex, Column::try_new(COLOR, width, vertex_color).unwrap());
+    add(Domain::Vertex, Column::texcoords(TEXCOORD, &[0.1, 0.2, 0.3, 0.4, 0.5].map(|u| [u, 1.0 - u])));
+    if let Some(values) = face_color {
+        add(Domain::Face, Column::try_new(COLOR, values.len() / 3, values).unwrap());
+    } else {
+        add(Domain::Face, Column::labels("colormap", vec![3, u32::MAX, 0]));
+    }
+    mesh
+}
+
+#[test]
+fn every_column_survives_in_the_same_bits() {
+    let bytes = |count: u8| Values::U8((0..count).map(|i| i.wrapping_mul(37)).collect());
+    let fractions = |count: u32| Values::F64((0..count).map(|i| f64::from(i) / 11.0).collect());
+    let whole = |count: usize| Values::F64(vec![1.0; count]);
+    for (header, vertex, face) in [
+        ("STCNOFF", bytes(15), Some(bytes(9))),
+        ("STCNOFF", bytes(20), Some(fractions(12))),
+        ("STCNOFF", fractions(15), Some(whole(9))),
+        ("STCNOFF", whole(20), None),
+        ("STCNOFF", Values::U8([0, 1, 1, 255].repeat(5)), None),
+    ] {
+        let mesh = painted(vertex, face);
+        let (file, report) = written(&Shape::new(Part::new(mesh.clone())), Encoding::Automatic);
+        assert!(file.starts_with(format!("{header}\n5 3 0\n").as_bytes()));
+        assert_eq!((report.deviation, whats(&report)), (Deviation::Exact, vec![]));
+        let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
+        assert_eq!(*geometry(&again), mesh.into());
+        let (twice, _) = written(&again.shape, Encoding::Automatic);
+        assert_eq!(twice, file);
+    }
+    // Bytes that could be fractions get an alpha that says what they are.
+    let (file, _) = written(&Shape::new(Part::new(painted(Values::U8(vec![1; 15]), None))), Encoding::Ascii);
+    let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
+    assert_eq!(column(&again, Domain::Vertex, COLOR).values(), &Values::U8([1, 1, 1, 255].repeat(5)));
+}
+
+#[test]
+fn binary_numbers_are_rounded_and_said_so() {
+    let mesh = painted(Values::F64(vec![0.5; 20]), Some(Values::U8(vec![255, 0, 128, 9, 9, 9, 0, 0, 0])));
+    let (file, report) = written(&Shape::new(Part::new(mesh.clone())), Encoding::Binary);
+    assert!(file.starts_with(b"STCNOFF BINARY\n"));
+    let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
+    let Deviation::AtMost(bound) = report.deviation else { panic!("{:?}", report.deviation) };
+    let (found, wanted) = (points_of(geometry(&again)).unwrap(), mesh.positions());
+    let moved = found.iter().zip(wanted).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!(moved > 0.0 && moved <= bound && bound <= moved * 1.000_001, "{moved} {bound}");
+    assert_eq!(whats(&report), ["positions", "colours in bytes", "values of vertices and faces"]);
+    assert!(report.losses[0].why.contains(&format!("{bound:e}")));
+    assert_eq!(column(&again, Domain::Vertex, COLOR).values(), &Values::F64(vec![0.5; 20]));
+    // Half of sRGB is about a fifth of the light.
+    let colors = column(&again, Domain::Face, COLOR);
+    assert!((colors.number(0, 2) - 0.2158605).abs() < 1e-6 && colors.number(0, 0) == 1.0);
+    let (twice, report) = written(&again.shape, Encoding::BinaryBigEndian);
+    assert_eq!((twice, report.deviation), (file, Deviation::Exact));
+    let far = Shape::new(Part::new(PointCloud::new(vec![DVec3::ZERO, DVec3::X * 1e39])));
+    let context = WriteContext {
+        options: WriteOptions { encoding: Encoding::Binary, ..Default::default() },
+        ..Default::default()
+    };
+    let error = crate::write(&far, &FORMAT, &context, &mut Vec::new()).unwrap_err();
+    assert!(matches!(error, crate::WriteError::NotFinite { index: 1, .. }), "{error}");
+}
+
+#[test]
+fn parts_are_put_together_and_what_differs_is_lost() {
+    let square = painted(Values::U8(vec![7; 15]), Some(Values::U8(vec![9; 9])));
+    let mut cloud = PointCloud::new(vec![DVec3::splat(5.0), DVec3::splat(6.0)]);
+    cloud.insert_attribute(Column::try_new(COLOR, 4, Values::U8(vec![200; 8])).unwrap()).unwrap();
+    cloud.insert_attribute(Column::labels("id", vec![1, 2])).unwrap();
+    let placement = Affine::from_translation(DVec3::X);
+    let parts =
+        vec![Part { placement, ..Part::new(square.clone()).named("square") }, Part::new(cloud), Part::new(square)];
+    let (file, report) = written(&Shape { parts, ..Shape::default() }, Encoding::Automatic);
+    let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
+    let Geometry::PolyMesh(mesh) = geometry(&again) else { panic!("polygons") };
+    assert_eq!((mesh.positions().len(), mesh.face_count()), (12, 6));
+    assert_eq!((mesh.positions()[0], mesh.face(4)), (DVec3::X, &[8, 9, 10, 11][..]));
+    let color = column(&again, Domain::Vertex, COLOR);
+    assert_eq!((color.width(), color.number(0, 3), color.number(5, 3)), (4, 255.0, 200.0));
+    let wanted = [
+        "3 separate parts",
+        "part name \"square\"",
+        "placements of 1 parts",
+        "vertex attribute \"color\"",
+        "vertex attribute \"normal\"",
+        "vertex attribute \"texcoord\"",
+        "vertex attribute \"id\"",
+    ];
+    assert_eq!(whats(&report), wanted);
+}
+
+#[test]
+fn clouds_and_nothing_survive() {
+    let cloud = Shape::new(Part::new(PointCloud::new(vec![DVec3::ONE, DVec3::X * 1e300])));
+    for (shape, counts) in [(cloud, "OFF\n2 0 0\n"), (Shape::default(), "OFF\n0 0 0\n")] {
+        let (file, _) = written(&shape, Encoding::Automatic);
+        assert!(file.starts_with(counts.as_bytes()));
+        let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
+        match shape.parts.first() {
+            Some(part) => assert_eq!(again.shape.parts[0].geometry, part.geometry),
+            None => assert_eq!((codes(&again), geometry(&again).kind()), (vec!["W-off-empty"], Kind::TriMesh)),
+        }
     }
 }

@@ -71,8 +71,15 @@ fn lone_vertices(parts: &[Arc<Geometry>], losses: &mut Losses) {
 
 /// The unit normal of a facet by the order of its corners; zero where it has none.
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    let cross = (b - a).cross(c - a);
-    // Of the largest component, as squares of tiny or huge ones vanish or overflow.
+    let (first, second) = (b - a, c - a);
+    let cross = first.cross(second);
+    let square = cross.length_squared();
+    if (1e-280..1e280).contains(&square) {
+        return cross / square.sqrt();
+    }
+    // Squares of tiny or huge numbers vanish or overflow: in units of the longest components they do not.
+    let unit = |edge: DVec3| edge / edge.abs().max_element();
+    let cross = unit(first).cross(unit(second));
     let size = cross.abs().max_element();
     if size > 0.0 && size.is_finite() { (cross / size).normalize_or_zero() } else { DVec3::ZERO }
 }
