@@ -5,12 +5,15 @@
 
 mod bench;
 mod codes;
+mod collection;
+mod collection_obj;
 mod command_line;
 mod documents;
 mod floors;
 mod harness;
 mod laws;
 mod malformed;
+mod malformed_obj;
 mod oracles;
 mod properties;
 mod regressions;

@@ -35,6 +35,7 @@ impl Pieces {
             Geometry::TriMesh(mesh) => Some(Self::Triangles(triangles(mesh))),
             Geometry::PolyMesh(mesh) => Some(Self::Triangles(fans(mesh))),
             Geometry::Polyline(line) => Some(Self::Segments(line.segments().collect())),
+            Geometry::GeometricGraph(graph) => Some(Self::Segments(graph.segments().collect())),
             Geometry::PointCloud(cloud) => Some(Self::Points(cloud.positions().to_vec())),
             _ => None,
         }

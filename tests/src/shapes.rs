@@ -4,7 +4,7 @@ use shapeloom::core::Exec;
 use shapeloom::core::glam::{DVec2, DVec3};
 use shapeloom::io::{ReadContext, format_by_id, read};
 use shapeloom::mesh::primitives::{Cylinder, Platonic, Solid, Torus};
-use shapeloom::mesh::{Column, Domain, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
+use shapeloom::mesh::{Column, Domain, GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
 use shapeloom::parametric::{BezierCurve, BezierPatch, BezierSurface};
 use shapeloom::shape::{Geometry, Kind};
 
@@ -41,6 +41,12 @@ pub fn hills() -> HeightField {
         })
         .collect();
     HeightField::try_new(12, 9, DVec2::new(0.5, 0.4), heights).expect("a grid of the right size")
+}
+
+/// Three edges that meet in a vertex.
+pub fn letter() -> GeometricGraph {
+    let positions = vec![DVec3::ZERO, DVec3::Y, DVec3::new(1.0, 2.0, 0.0), DVec3::new(-1.0, 2.0, 0.5)];
+    GeometricGraph::try_new(positions, vec![[0, 1], [1, 2], [3, 1]]).expect("edges between vertices that exist")
 }
 
 /// A closed polygon mesh with labels on every kind of element.
@@ -84,6 +90,7 @@ pub fn of_kind(kind: Kind) -> Vec<(&'static str, Geometry)> {
             ("nothing", BezierSurface::default().into()),
         ],
         Kind::Polyline => vec![("polyline", Polyline::new(vec![DVec3::ZERO, DVec3::X, DVec3::ONE], true).into())],
+        Kind::GeometricGraph => vec![("letter Y", letter().into())],
         Kind::HeightField => vec![("hills", hills().into())],
         Kind::PolyMesh => vec![
             ("tagged cylinder", tagged_polygons().into()),

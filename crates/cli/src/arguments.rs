@@ -83,9 +83,21 @@ pub(crate) struct WayArguments {
     /// A kind that the way must pass through; `shapeloom graph` lists them
     #[arg(long, value_name = "KIND")]
     pub(crate) via: Option<String>,
-    /// An option of a converter on the way, as often as needed: key=value, or converter.key=value
+    /// An option of a converter on the way, of the input or of the output, as often as needed: key=value, or
+    /// converter.key=value, read.key=value, write.key=value
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<(String, String)>,
+}
+
+/// How an input is read, for every command that reads one.
+#[derive(Debug, Args)]
+pub(crate) struct SourceArguments {
+    /// The format of the input, if its content does not tell
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) from: Option<String>,
+    /// Leave out vertices at positions that are infinite or not a number, with all that uses them
+    #[arg(long)]
+    pub(crate) drop_non_finite: bool,
 }
 
 /// Where a result goes, for every command that writes a shape.
@@ -122,18 +134,19 @@ pub(crate) struct ConvertArguments {
     pub(crate) target: TargetArguments,
     #[command(flatten)]
     pub(crate) way: WayArguments,
-    /// The format of the input, if its content does not tell
-    #[arg(long, value_name = "FORMAT")]
-    pub(crate) from: Option<String>,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct InfoArguments {
     /// The file to read, or - for standard input
     pub(crate) input: PathBuf,
-    /// The format of the input, if its content does not tell
-    #[arg(long, value_name = "FORMAT")]
-    pub(crate) from: Option<String>,
+    /// An option of the input, as often as needed: key=value
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub(crate) settings: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
 }
 
 #[derive(Debug, Args)]
@@ -144,9 +157,8 @@ pub(crate) struct RenderArguments {
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) way: WayArguments,
-    /// The format of the input, if its content does not tell
-    #[arg(long, value_name = "FORMAT")]
-    pub(crate) from: Option<String>,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
     /// The size of the picture in pixels
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1280x960")]
     pub(crate) size: (u32, u32),
@@ -177,7 +189,7 @@ pub(crate) struct MakeArguments {
     pub(crate) shape: String,
     #[command(flatten)]
     pub(crate) target: TargetArguments,
-    /// An option of the shape, as often as needed: key=value
+    /// An option of the shape or of the output, as often as needed: key=value
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<(String, String)>,
 }

@@ -8,6 +8,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-attribute-duplicate", "Two attributes of one element kind have the same name."),
     ("E-attribute-length", "An attribute has another number of elements than the shape."),
+    ("E-attribute-list", "The lists of an attribute start out of order, or end elsewhere than its values."),
     ("E-attribute-text", "A text attribute has an index without a name, or more than one text an element."),
     ("E-attribute-width", "The number of an attribute's values is no multiple of its width."),
     ("E-bezier-count", "A control net has another number of points than its degrees ask for: (m + 1)(n + 1)."),
@@ -30,6 +31,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The work needs more memory than --max-memory allows; ask for a coarser result, or allow more.",
     ),
     ("E-mesh-corners", "A polygon has fewer than three corners."),
+    ("E-mesh-edge", "An edge names a vertex that does not exist."),
     ("E-mesh-grid", "A height field's number of heights is not its columns times its rows, both from 2."),
     ("E-mesh-index", "A face names a vertex that does not exist."),
     ("E-mesh-position", "A position is infinite or not a number."),
@@ -80,6 +82,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-format", "The format of standard output has to be named with --to."),
     ("E-usage-kind", "There is no kind of shape of that name; `shapeloom graph` lists them."),
     ("E-usage-outputs", "Two outputs have one name, or two kinds of data want standard output."),
+    ("E-usage-setting", "An option given with --set means nothing here: for this format, or for this command."),
     ("E-usage-shape", "There is no ready shape of that name."),
     ("E-usage-threads", "That many threads could not be started."),
     (

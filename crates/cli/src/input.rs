@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use shapeloom_io::{
-    Format, ReadContext, ReadShape, SiblingError, SiblingName, Siblings, detect, format_by_id, read, slurp,
+    Format, ReadContext, ReadShape, SiblingError, SiblingName, Siblings, detect, format_by_id, read, slurp, slurp_sized,
 };
 
+use crate::arguments::SourceArguments;
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::settings::Settings;
 
 /// A shape as it was read.
 pub(crate) struct Input {
@@ -27,7 +29,12 @@ pub(crate) fn is_stream(path: &Path) -> bool {
 }
 
 /// Reads a file or standard input, in the format named or else told by its content and extension.
-pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -> Result<Input, Failure> {
+pub(crate) fn open(
+    path: &Path,
+    source: &SourceArguments,
+    settings: &Settings,
+    session: &mut Session<'_>,
+) -> Result<Input, Failure> {
     session.stage("reading");
     let limits = session.limits();
     let exec = session.exec();
@@ -38,14 +45,17 @@ pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -
         (name, bytes)
     } else {
         let file = File::open(path).map_err(|error| Failure::read(path, &error))?;
-        if file.metadata().is_ok_and(|data| data.is_dir()) {
+        let data = file.metadata().ok();
+        if data.as_ref().is_some_and(|data| data.is_dir()) {
             let folder = std::io::Error::new(std::io::ErrorKind::IsADirectory, "it is a folder");
             return Err(Failure::read(path, &folder));
         }
-        (path.display().to_string(), slurp(file, &limits, &exec).map_err(|error| Failure::from(error).about(path))?)
+        let hint = data.filter(|data| data.is_file()).map_or(0, |data| data.len());
+        let bytes = slurp_sized(file, hint, &limits, &exec);
+        (path.display().to_string(), bytes.map_err(|error| Failure::from(error).about(path))?)
     };
     let _memory = exec.reserve(bytes.len() as u64)?;
-    let format = match from {
+    let format = match source.from.as_deref() {
         Some(id) => format_by_id(id)?,
         None => {
             let file_name = (!is_stream(path)).then_some(name.as_str());
@@ -56,7 +66,8 @@ pub(crate) fn open(path: &Path, from: Option<&str>, session: &mut Session<'_>) -
         Some(folder) if !is_stream(path) => Some(Arc::new(Folder(folder.to_owned()))),
         _ => None,
     };
-    let context = ReadContext { limits, exec, siblings, ..ReadContext::named(name.as_str()) };
+    let options = settings.reading(format, source.drop_non_finite)?;
+    let context = ReadContext { limits, exec, siblings, options, ..ReadContext::named(name.as_str()) };
     let read = read(&bytes, format, &context).map_err(|error| Failure::from(error).about(name.as_ref()))?;
     session.say_findings(&read.findings);
     for loss in &read.losses {

@@ -22,6 +22,7 @@ mod input;
 mod output;
 mod progress;
 mod session;
+mod settings;
 mod streams;
 
 pub use explanations::explanation;

@@ -3,7 +3,9 @@
 use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
+use shapeloom_io::{SiblingName, SiblingOutputs};
 use tempfile::{Builder, SpooledTempFile, TempPath};
 
 use crate::failure::Failure;
@@ -25,6 +27,29 @@ enum Pending {
 
 /// What is spooled stays in memory up to this many bytes.
 const SPOOL: usize = 1 << 20;
+
+/// Whether an output is a file, new or replaced, and not a stream, device or pipe.
+pub(crate) fn is_regular(path: &Path) -> bool {
+    !is_stream(path) && !path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir())
+}
+
+/// Keeps the files that a writer wants beside its output, until that is complete.
+#[derive(Default)]
+pub(crate) struct Beside(Mutex<Vec<(SiblingName, Vec<u8>)>>);
+
+impl Beside {
+    /// What was kept.
+    pub(crate) fn take(&self) -> Vec<(SiblingName, Vec<u8>)> {
+        self.0.lock().map(|mut kept| std::mem::take(&mut *kept)).unwrap_or_default()
+    }
+}
+
+impl SiblingOutputs for Beside {
+    fn put(&self, name: &SiblingName, bytes: Vec<u8>) -> io::Result<()> {
+        self.0.lock().map_err(|_| io::Error::other("another writer failed"))?.push((name.clone(), bytes));
+        Ok(())
+    }
+}
 
 /// Refuses an output that exists, before any work is done for it.
 pub(crate) fn check_free(path: &Path, force: bool) -> Result<(), Failure> {
@@ -88,8 +113,7 @@ pub(crate) fn stage(
     force: bool,
     write: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
 ) -> Result<Output, Failure> {
-    let special = path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir());
-    let pending = if is_stream(path) || special {
+    let pending = if !is_regular(path) {
         let mut spool = SpooledTempFile::new(SPOOL);
         write_buffered(path, &mut spool, write)?;
         Pending::Through(spool)

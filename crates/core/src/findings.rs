@@ -62,6 +62,17 @@ impl Findings {
         }
     }
 
+    /// The same with every place made another.
+    #[must_use]
+    pub fn with_places(mut self, f: impl Fn(Place) -> Place) -> Self {
+        for finding in &mut self.0 {
+            for place in &mut finding.places {
+                *place = f(std::mem::replace(place, Place::Whole));
+            }
+        }
+        self
+    }
+
     /// Adds all of `other`.
     pub fn extend(&mut self, other: Self) {
         for finding in other.0 {

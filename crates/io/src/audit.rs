@@ -5,9 +5,10 @@ use std::sync::Arc;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::{CHUNK, map_chunks};
 use shapeloom_core::{Exec, Findings, Place, Severity, Stop};
-use shapeloom_mesh::{MeshOrigins, Origins, PointCloud, PolyMesh, Polyline, TriMesh, carry};
+use shapeloom_mesh::{GeometricGraph, PointCloud, Polyline};
 use shapeloom_shape::{Geometry, Shape};
 
+use crate::cut::cut;
 use crate::{Fault, ReadError};
 
 /// Remarks on the faces of a mesh that name a vertex twice or whose corners lie on one line; `place` says where in the
@@ -127,71 +128,65 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
         return Ok(None);
     }
     let wrong = |error: String| Fault::new("E-read-elements", Place::Whole, error, "a mesh");
-    let kept: Vec<u32> = (0..points.len() as u32).filter(|&vertex| points[vertex as usize].is_finite()).collect();
+    let finite = |vertex: &u32| points[*vertex as usize].is_finite();
+    let kept: Vec<u32> = (0..points.len() as u32).filter(finite).collect();
     let lost = points.len() - kept.len();
-    let positions: Vec<DVec3> = kept.iter().map(|&vertex| points[vertex as usize]).collect();
-    let mut renumbered = vec![u32::MAX; points.len()];
-    for (new, &old) in kept.iter().enumerate() {
-        renumbered[old as usize] = new as u32;
-    }
-    let whole = |corners: &[u32]| corners.iter().all(|&corner| renumbered[corner as usize] != u32::MAX);
-    Ok(Some(match geometry {
-        Geometry::TriMesh(mesh) => {
-            let faces: Vec<u32> =
-                (0..mesh.triangles().len() as u32).filter(|&face| whole(&mesh.triangles()[face as usize])).collect();
-            let wedges = faces.iter().flat_map(|&face| 3 * face..3 * face + 3).collect();
-            let triangles: Vec<[u32; 3]> = faces
-                .iter()
-                .map(|&face| mesh.triangles()[face as usize].map(|corner| renumbered[corner as usize]))
-                .collect();
-            let lost_faces = mesh.triangles().len() - faces.len();
-            let origins = origins(kept, faces, wedges);
-            let (attributes, _) = carry(mesh.attributes(), &origins);
-            let mesh = TriMesh::with_attributes(positions, triangles, attributes);
-            (mesh.map_err(|error| wrong(error.to_string()))?.into(), lost, lost_faces)
-        }
-        Geometry::PolyMesh(mesh) => {
-            let faces: Vec<u32> =
-                (0..mesh.face_count() as u32).filter(|&face| whole(mesh.face(face as usize))).collect();
-            let wedges: Vec<u32> =
-                faces.iter().flat_map(|&face| mesh.wedges(face as usize)).map(|wedge| wedge as u32).collect();
-            let mut starts = vec![0];
-            let mut corners = Vec::with_capacity(wedges.len());
-            for &face in &faces {
-                corners.extend(mesh.face(face as usize).iter().map(|&corner| renumbered[corner as usize]));
-                starts.push(corners.len() as u32);
-            }
-            let lost_faces = mesh.face_count() - faces.len();
-            let (attributes, _) = carry(mesh.attributes(), &origins(kept, faces, wedges));
-            let mesh = PolyMesh::with_attributes(positions, starts, corners, attributes);
-            (mesh.map_err(|error| wrong(error.to_string()))?.into(), lost, lost_faces)
-        }
+    let mut new_of_old = vec![u32::MAX; points.len()];
+    kept.iter().enumerate().for_each(|(new, &old)| new_of_old[old as usize] = new as u32);
+    let gathered = || kept.iter().map(|&vertex| points[vertex as usize]).collect();
+    let (rest, lost_faces) = match geometry {
         Geometry::PointCloud(cloud) => {
-            let mut finite = PointCloud::new(positions);
+            let mut rest = PointCloud::new(gathered());
             for column in cloud.attributes() {
-                finite.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+                rest.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
             }
-            (finite.into(), lost, 0)
+            (Some(rest.into()), 0)
         }
         Geometry::Polyline(line) => {
-            let mut finite = Polyline::new(positions, line.is_closed());
+            let mut rest = Polyline::new(gathered(), line.is_closed());
             for column in line.attributes() {
-                finite.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+                rest.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
             }
-            (finite.into(), lost, lost)
+            (Some(rest.into()), lost)
+        }
+        Geometry::GeometricGraph(graph) => {
+            let edges: Vec<u32> = (0..graph.edges().len() as u32)
+                .filter(|&edge| graph.edges()[edge as usize].iter().all(finite))
+                .collect();
+            let ends = |&edge: &u32| graph.edges()[edge as usize].map(|end| new_of_old[end as usize]);
+            let rest = GeometricGraph::try_new(gathered(), edges.iter().map(ends).collect());
+            let mut rest = rest.map_err(|error| wrong(error.to_string()))?;
+            for column in graph.vertex_attributes() {
+                let column = column.gathered(&kept);
+                rest.insert_vertex_attribute(column).map_err(|error| wrong(error.to_string()))?;
+            }
+            for column in graph.edge_attributes() {
+                let column = column.gathered(&edges);
+                rest.insert_edge_attribute(column).map_err(|error| wrong(error.to_string()))?;
+            }
+            (Some(rest.into()), graph.edges().len() - edges.len())
+        }
+        Geometry::TriMesh(mesh) => {
+            let whole = |face: &u32| mesh.triangles()[*face as usize].iter().all(finite);
+            let faces: Vec<u32> = (0..mesh.triangles().len() as u32).filter(whole).collect();
+            let lost_faces = mesh.triangles().len() - faces.len();
+            (cut(geometry, kept, faces, &new_of_old).map_err(|error| wrong(error.to_string()))?, lost_faces)
+        }
+        Geometry::PolyMesh(mesh) => {
+            let whole = |face: &u32| mesh.face(*face as usize).iter().all(finite);
+            let faces: Vec<u32> = (0..mesh.face_count() as u32).filter(whole).collect();
+            let lost_faces = mesh.face_count() - faces.len();
+            (cut(geometry, kept, faces, &new_of_old).map_err(|error| wrong(error.to_string()))?, lost_faces)
         }
         _ => return Ok(None),
-    }))
-}
-
-fn origins(vertices: Vec<u32>, faces: Vec<u32>, wedges: Vec<u32>) -> MeshOrigins {
-    MeshOrigins { vertex: Origins::Copies(vertices), face: Origins::Copies(faces), wedge: Origins::Copies(wedges) }
+    };
+    Ok(rest.map(|rest| (rest, lost, lost_faces)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shapeloom_mesh::{Column, Domain};
+    use shapeloom_mesh::{Column, Domain, PolyMesh, TriMesh};
     use shapeloom_shape::Part;
 
     #[test]

@@ -5,13 +5,11 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-bpt-count", "A BPT file begins with the number of patches, in digits alone. Correct the first number."),
     (
         "E-bpt-degree",
-        "Each patch of a BPT file begins with two degrees, whole numbers from 1. A patch before it may have \
-     too many or too few control points, so that other numbers are read as degrees.",
+        "Each patch of a BPT file begins with two degrees, whole numbers from 1. A patch before it may have too many or too few control points, so that other numbers are read as degrees.",
     ),
     (
         "E-bpt-finite",
-        "A coordinate of a control point is infinite, no number, or larger than the largest double. Points \
-     must be finite: repair the program that wrote the file.",
+        "A coordinate of a control point is infinite, no number, or larger than the largest double. Points must be finite: repair the program that wrote the file.",
     ),
     (
         "E-bpt-limit",
@@ -21,8 +19,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-bpt-patch", "The control points of a patch make no Bézier patch."),
     (
         "E-bpt-truncated",
-        "The file ends before the number of patches that its first number promises. It was cut off, or the \
-     number is wrong.",
+        "The file ends before the number of patches that its first number promises. It was cut off, or the number is wrong.",
     ),
     ("E-format-id", "No format has this short name. The list of formats has all of them."),
     (
@@ -31,8 +28,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-format-unknown",
-        "Neither the first bytes nor the extension of the input tell its format. Name the format if you \
-     know it.",
+        "Neither the first bytes nor the extension of the input tell its format. Name the format if you know it.",
     ),
     (
         "E-glb-chunk",
@@ -45,8 +41,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-glb-version", "Only version 2 of the GLB container is read. Convert the file with another program."),
     (
         "E-gltf-bounds",
-        "An accessor or a buffer view reaches past the end of its bytes, or its elements overlap. Nothing \
-     outside of a buffer is ever read; the program that wrote the file counted wrongly.",
+        "An accessor or a buffer view reaches past the end of its bytes, or its elements overlap. Nothing outside of a buffer is ever read; the program that wrote the file counted wrongly.",
     ),
     ("E-gltf-buffer", "A buffer has fewer bytes than its byteLength, or no bytes at all."),
     ("E-gltf-count", "An accessor has no elements, or attributes of one primitive have different numbers of elements."),
@@ -65,17 +60,33 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-gltf-mode", "The mode of a primitive is a number from 0, points, to 6, a fan of triangles."),
     (
         "E-gltf-parents",
-        "A node has two parents, or the scene reaches it twice. The nodes of a scene must be a tree; \
-     instances share a mesh, not a node.",
+        "A node has two parents, or the scene reaches it twice. The nodes of a scene must be a tree; instances share a mesh, not a node.",
     ),
     ("E-gltf-reference", "A number names an element of a list that is not there."),
     (
         "E-gltf-type",
-        "A value has another type than glTF gives it: a string for a number, VEC2 for positions, floating \
-     numbers for indices.",
+        "A value has another type than glTF gives it: a string for a number, VEC2 for positions, floating numbers for indices.",
     ),
     ("E-gltf-uri", "An embedded buffer is not base64 data."),
     ("E-gltf-version", "Only version 2.0 of glTF is read."),
+    ("E-obj-degree", "A free-form curve or surface has too few control points for its degree."),
+    (
+        "E-obj-finite",
+        "A coordinate is infinite, not a number, or beyond 1.8e308. Vertices are counted from 0 here. `--drop-non-finite` leaves such vertices out.",
+    ),
+    ("E-obj-freeform", "The file holds free-form curves or surfaces, which are not read yet. Export it as polygons."),
+    (
+        "E-obj-index",
+        "A face, line or point names something that does not exist. OBJ counts from 1, and from -1 backwards.",
+    ),
+    ("E-obj-limit", "The file has more elements or a larger polygon than the limits allow."),
+    ("E-obj-mesh", "The elements do not make a mesh."),
+    (
+        "E-obj-number",
+        "A number, or the index of a corner, does not read as one. Decimal numbers only: no commas, no hexadecimal.",
+    ),
+    ("E-obj-row", "A vertex, normal or texture coordinate has too few or too many numbers."),
+    ("E-obj-truncated", "The file ends within a free-form curve or surface."),
     (
         "E-off-claim",
         "The counts of an OFF file, or the number of corners of a face, are more than the bytes that follow can \
@@ -114,14 +125,13 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-read-size", "The input is longer than the reader's limits allow. Raise the limit if you trust it."),
     (
         "E-sibling-missing",
-        "The input names a file beside it that is not there, too long or unreadable, or the input is \
-     read alone so that nothing is beside it.",
+        "The input names a file beside it that is not there, too long or unreadable, or the input is read alone so that nothing is beside it.",
     ),
     ("E-sibling-path", "The input names a file outside of its own folder. Such files are never opened."),
     (
         "E-stl-claim",
-        "The count of a binary STL file is larger than its number of bytes, so that it cannot be right. It may be \
-     in the other byte order, or the file may be no STL.",
+        "The count of a binary STL file is larger than its number of bytes, so that it cannot be right. It may be in \
+     the other byte order, or the file may be no STL.",
     ),
     (
         "E-stl-finite",
@@ -147,8 +157,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-text-line", "A line is longer than the reader's limits allow. It may not be text at all."),
     (
         "E-write-finite",
-        "A position is infinite or not a number, or becomes so where it is placed or in the numbers of the \
-     format. Repair the shape first.",
+        "A position is infinite or not a number, or becomes so where it is placed or in the numbers of the format. Repair the shape first.",
     ),
     ("E-write-format", "Files of this format are read but not written."),
     ("E-write-io", "The output could not be written: the disk may be full, or the folder read only."),
@@ -160,8 +169,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-bpt-empty", "The file says that it has no patches; the surface is empty."),
     (
         "W-bpt-trailing",
-        "More follows after the last patch. Everything up to there was read; the number of patches in the \
-     first line may be too small.",
+        "More follows after the last patch. Everything up to there was read; the number of patches in the first line may be too small.",
     ),
     ("W-bpt-up", "BPT says nothing of directions, and its readers take z as up."),
     ("W-glb-chunk", "A chunk that glTF 2.0 does not define, or not in this place, was passed over."),
@@ -182,6 +190,24 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
+    (
+        "W-obj-color",
+        "Vertex colours that are missing for some vertices or not finite were passed over; whole numbers were taken as bytes.",
+    ),
+    ("W-obj-corner", "Some corners of faces name no normal or texture coordinate where others do."),
+    (
+        "W-obj-degenerate",
+        "A face names a vertex twice or has no area and was kept, or has fewer than three corners and was passed over.",
+    ),
+    ("W-obj-empty", "The file has no vertices."),
+    ("W-obj-finite", "A normal or texture coordinate is infinite or not a number."),
+    ("W-obj-ignored", "A statement carries nothing that a mesh holds."),
+    ("W-obj-library", "A material library was not read, in whole or in part: materials keep their names."),
+    ("W-obj-material", "A material is used that no library has: only its name is known."),
+    ("W-obj-smoothing", "A smoothing group is neither a number nor off."),
+    ("W-obj-statement", "A line begins with a word that OBJ does not have."),
+    ("W-obj-texture", "A texture that a material names is not beside the file. Its name was kept."),
+    ("W-obj-weight", "A vertex has the weight 0. Weights mean nothing for polygons; they are kept as a column."),
     (
         "W-off-color",
         "Something about the colours was guessed: what whole numbers mean, the colour of a face that has none among \

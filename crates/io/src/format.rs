@@ -57,6 +57,10 @@ pub enum Keeps {
     VertexColumns,
     /// Columns of any name on faces.
     FaceColumns,
+    /// Columns of any name on the edges of graphs.
+    EdgeColumns,
+    /// Columns of lists.
+    Lists,
     /// Values that differ between the faces around a vertex.
     Wedges,
     /// Part names.
@@ -71,16 +75,22 @@ pub enum Keeps {
     Units,
     /// The up axis, by convention or by word.
     UpAxis,
+    /// Rows that are no elements of a part.
+    Tables,
+    /// Comments.
+    Comments,
 }
 
 impl Keeps {
     /// Everything, in the order of the documentation.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 16] = [
         Self::Normals,
         Self::Texcoords,
         Self::Colors,
         Self::VertexColumns,
         Self::FaceColumns,
+        Self::EdgeColumns,
+        Self::Lists,
         Self::Wedges,
         Self::Names,
         Self::Parts,
@@ -88,6 +98,8 @@ impl Keeps {
         Self::Materials,
         Self::Units,
         Self::UpAxis,
+        Self::Tables,
+        Self::Comments,
     ];
 
     /// The name, in lower case with hyphens.
@@ -98,6 +110,8 @@ impl Keeps {
             Self::Colors => "colors",
             Self::VertexColumns => "vertex-columns",
             Self::FaceColumns => "face-columns",
+            Self::EdgeColumns => "edge-columns",
+            Self::Lists => "lists",
             Self::Wedges => "wedges",
             Self::Names => "names",
             Self::Parts => "parts",
@@ -105,6 +119,8 @@ impl Keeps {
             Self::Materials => "materials",
             Self::Units => "units",
             Self::UpAxis => "up-axis",
+            Self::Tables => "tables",
+            Self::Comments => "comments",
         }
     }
 }

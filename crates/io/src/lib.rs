@@ -28,6 +28,8 @@ pub mod text;
 
 mod audit;
 mod bpt;
+mod color;
+mod cut;
 mod detect;
 mod explanations;
 mod faces;
@@ -53,7 +55,7 @@ pub use detect::{DetectError, detect, format_by_id, format_for_output};
 pub use explanations::{EXPLANATIONS, explanation};
 pub use format::{FORMATS, Format, Keeps, Precision, ReadFn, Sniff, WriteFn};
 pub use options::{Encoding, Instances, ReadOptions, WriteOptions};
-pub use read::{ReadContext, ReadShape, read, slurp};
+pub use read::{ReadContext, ReadShape, read, slurp, slurp_sized};
 pub use read_error::{Fault, ReadError};
 pub use siblings::{SiblingError, SiblingName, SiblingOutputs, Siblings};
 pub use write::{WriteContext, write};

@@ -35,6 +35,16 @@ impl<'e> Memory<'e> {
     }
 }
 
+impl<'e> Memory<'e> {
+    /// Holds what others have reserved.
+    pub(crate) fn adopt(&mut self, others: impl IntoIterator<Item = Memory<'e>>) {
+        for other in others {
+            self.held.extend(other.held);
+            self.total += other.total;
+        }
+    }
+}
+
 /// A vector that reserves memory before it grows.
 #[derive(Debug)]
 pub(crate) struct Growing<T>(Vec<T>);
@@ -94,6 +104,23 @@ impl<T> Growing<T> {
         memory.take(more, size_of::<T>())?;
         self.0.reserve_exact(more);
         Ok(())
+    }
+
+    /// Adds the elements of another vector; that one itself where this is empty.
+    pub(crate) fn append(&mut self, memory: &mut Memory<'_>, other: Self) -> Result<(), OverBudget>
+    where
+        T: Copy,
+    {
+        if self.0.is_empty() {
+            *self = other;
+            return Ok(());
+        }
+        self.extend(memory, &other.0)
+    }
+
+    /// Forgets all but the first elements; the memory stays.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.0.truncate(count);
     }
 
     pub(crate) fn as_slice(&self) -> &[T] {

@@ -11,8 +11,9 @@ use shapeloom_shape::{Geometry, Part, Shape};
 
 use crate::{Format, Keeps, WriteError};
 
-/// The losses of the shape's frame: names, parts, instances, materials, units and up axis, where the format does not
-/// keep them.
+/// The losses that the format's table entry implies: names, parts, instances, materials, units, up axis, tables and
+/// comments, and columns of lists and of edges, where the format does not keep them. A writer that says it keeps lists or
+/// edge columns names those that it does not.
 pub(crate) fn frame_losses(shape: &Shape, format: &Format) -> Vec<Loss> {
     let mut losses = Vec::new();
     let keeps = |what: Keeps| format.keeps.contains(&what);
@@ -52,7 +53,44 @@ pub(crate) fn frame_losses(shape: &Shape, format: &Format) -> Vec<Loss> {
     if let Some(up) = shape.up.filter(|_| !keeps(Keeps::UpAxis)) {
         losses.push(Loss::new(format!("up axis ({})", up.name()), format!("{name} has no place for it")));
     }
+    if !keeps(Keeps::Tables) {
+        let names = shape.tables.iter().map(|table| format!("table \"{}\"", table.name));
+        losses.extend(names.map(|what| Loss::new(what, format!("{name} has no place for it"))));
+    }
+    if !keeps(Keeps::Comments) && !shape.comments.is_empty() {
+        let count = shape.comments.len();
+        let what = if count == 1 { "1 comment".into() } else { format!("{count} comments") };
+        losses.push(Loss::new(what, format!("{name} has no place for them")));
+    }
+    let mut columns = Losses::default();
+    for part in &shape.parts {
+        column_losses(&part.geometry, format, &mut columns);
+    }
+    losses.extend(columns.into_vec());
     losses
+}
+
+/// Columns of lists and of edges that the format does not keep.
+fn column_losses(geometry: &Geometry, format: &Format, losses: &mut Losses) {
+    let edges = edge_columns_of(geometry);
+    if !format.keeps.contains(&Keeps::EdgeColumns) {
+        for column in edges.into_iter().flatten() {
+            losses
+                .push(format!("edge attribute \"{}\"", column.name()), format!("{} has no place for it", format.name));
+        }
+    }
+    if format.keeps.contains(&Keeps::Lists) {
+        return;
+    }
+    let why = || format!("{} has no place for lists", format.name);
+    for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
+        for list in columns_of(geometry, domain).map_or(&[][..], Attributes::lists) {
+            losses.push(format!("{domain} list \"{}\"", list.name()), why());
+        }
+    }
+    for list in edges.map_or(&[][..], Attributes::lists) {
+        losses.push(format!("edge list \"{}\"", list.name()), why());
+    }
 }
 
 /// The geometry of a part where it is placed, with every position checked.
@@ -105,6 +143,7 @@ pub(crate) fn points_of(geometry: &Geometry) -> Option<&[DVec3]> {
     match geometry {
         Geometry::PointCloud(cloud) => Some(cloud.positions()),
         Geometry::Polyline(line) => Some(line.points()),
+        Geometry::GeometricGraph(graph) => Some(graph.positions()),
         Geometry::PolyMesh(mesh) => Some(mesh.positions()),
         Geometry::TriMesh(mesh) => Some(mesh.positions()),
         _ => None,
@@ -116,8 +155,17 @@ pub(crate) fn columns_of(geometry: &Geometry, domain: Domain) -> Option<&Attribu
     match (geometry, domain) {
         (Geometry::PointCloud(cloud), Domain::Vertex) => Some(cloud.attributes()),
         (Geometry::Polyline(line), Domain::Vertex) => Some(line.attributes()),
+        (Geometry::GeometricGraph(graph), Domain::Vertex) => Some(graph.vertex_attributes()),
         (Geometry::PolyMesh(mesh), _) => Some(mesh.attributes().of(domain)),
         (Geometry::TriMesh(mesh), _) => Some(mesh.attributes().of(domain)),
+        _ => None,
+    }
+}
+
+/// The columns of a geometry on its edges.
+pub(crate) fn edge_columns_of(geometry: &Geometry) -> Option<&Attributes> {
+    match geometry {
+        Geometry::GeometricGraph(graph) => Some(graph.edge_attributes()),
         _ => None,
     }
 }
@@ -144,5 +192,51 @@ impl Losses {
 
     pub(crate) fn into_vec(self) -> Vec<Loss> {
         self.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FORMATS, WriteContext, write};
+    use shapeloom_mesh::{Column, GeometricGraph, ListColumn, TriMesh, Values};
+    use shapeloom_shape::{Kind, Table};
+
+    fn list(name: &str, elements: usize) -> ListColumn {
+        let starts = (0..=elements as u32).collect();
+        ListColumn::try_new(name, starts, Values::U8(vec![1; elements])).unwrap()
+    }
+
+    #[test]
+    fn no_writer_forgets_lists_tables_and_comments() {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let mut mesh = TriMesh::try_new(positions.clone(), vec![[0, 1, 2]]).unwrap();
+        for (domain, elements) in [(Domain::Vertex, 3), (Domain::Face, 1), (Domain::Wedge, 3)] {
+            mesh.insert_list(domain, list("tree", elements)).unwrap();
+        }
+        let mut graph = GeometricGraph::try_new(positions, vec![[0, 1], [2, 1]]).unwrap();
+        graph.insert_vertex_list(list("leaf", 3)).unwrap();
+        graph.insert_edge_list(list("twig", 2)).unwrap();
+        graph.insert_edge_attribute(Column::labels("street", vec![1, 2])).unwrap();
+        let parts = vec![Part::new(mesh), Part::new(graph)];
+        let tables = vec![Table { name: "rows".into(), columns: Attributes::new(4) }];
+        let shape = Shape { parts, tables, comments: vec!["one".into(), "two".into()], ..Shape::default() };
+        let takes = |format: &&Format| format.holds(Kind::TriMesh) && format.holds(Kind::GeometricGraph);
+        for format in FORMATS.iter().filter(|format| format.writes.is_some()).filter(takes) {
+            let report = write(&shape, format, &WriteContext::default(), &mut Vec::new()).unwrap();
+            let said = |what: &str| report.losses.iter().any(|loss| loss.what == what);
+            for (keeps, what) in [
+                (Keeps::Lists, "vertex list \"tree\""),
+                (Keeps::Lists, "face list \"tree\""),
+                (Keeps::Lists, "wedge list \"tree\""),
+                (Keeps::Lists, "vertex list \"leaf\""),
+                (Keeps::Lists, "edge list \"twig\""),
+                (Keeps::EdgeColumns, "edge attribute \"street\""),
+                (Keeps::Tables, "table \"rows\""),
+                (Keeps::Comments, "2 comments"),
+            ] {
+                assert!(format.keeps.contains(&keeps) || said(what), "{}: {what} in {:?}", format.id, report.losses);
+            }
+        }
     }
 }

@@ -83,9 +83,21 @@ pub fn read(input: &[u8], format: &Format, context: &ReadContext) -> Result<Read
 ///
 /// # Errors
 /// More bytes than [`Limits::max_bytes`], the stream failed, or the reason to stop.
-pub fn slurp(mut reader: impl Read, limits: &Limits, exec: &Exec) -> Result<Vec<u8>, ReadError> {
+pub fn slurp(reader: impl Read, limits: &Limits, exec: &Exec) -> Result<Vec<u8>, ReadError> {
+    slurp_sized(reader, 0, limits, exec)
+}
+
+/// The same for an input that says how long it is, such as a file: the bytes are then moved no more than needed. The
+/// number is a hint: it is taken from the memory budget and believed no further.
+///
+/// # Errors
+/// As [`slurp`], and a budget that does not have as many bytes as the hint.
+pub fn slurp_sized(mut reader: impl Read, bytes: u64, limits: &Limits, exec: &Exec) -> Result<Vec<u8>, ReadError> {
     const PIECE: u64 = 1 << 20;
-    let mut bytes = Vec::new();
+    let hint = bytes.min(limits.max_bytes);
+    let _room = exec.reserve(hint)?;
+    // A byte more shows that the end was reached without growing.
+    let mut bytes = Vec::with_capacity(if hint == 0 { 0 } else { usize::try_from(hint).unwrap_or(0) + 1 });
     loop {
         let piece = reader.by_ref().take(PIECE).read_to_end(&mut bytes);
         exec.check()?;
@@ -110,7 +122,7 @@ fn too_long(max_bytes: u64) -> Box<Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FORMATS, format_by_id};
+    use crate::FORMATS;
     use shapeloom_core::{CancelFlag, Diagnostic, Stop};
 
     #[test]
@@ -144,7 +156,8 @@ mod tests {
 
     #[test]
     fn formats_without_a_reader_say_so() {
-        let error = read(b"v 0 0 0", format_by_id("obj").unwrap(), &ReadContext::named("a.obj")).unwrap_err();
+        let error =
+            read(b"v 0 0 0", &Format { reads: None, ..crate::obj::FORMAT }, &ReadContext::named("a.obj")).unwrap_err();
         assert_eq!(error.category(), Category::Unsupported);
         assert!(error.to_string().starts_with("a.obj: found a Wavefront OBJ file"), "{error}");
     }

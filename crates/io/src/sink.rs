@@ -31,6 +31,18 @@ impl<'o> Sink<'o> {
         self.bytes(&[])
     }
 
+    /// The block, to append to; then call [`Sink::spill`].
+    #[inline]
+    pub(crate) fn block(&mut self) -> &mut Vec<u8> {
+        &mut self.block
+    }
+
+    /// Passes the block on if it is full.
+    #[inline]
+    pub(crate) fn spill(&mut self) -> Result<(), WriteError> {
+        if self.block.len() >= BLOCK { self.pass_on() } else { Ok(()) }
+    }
+
     pub(crate) fn finish(mut self) -> Result<(), WriteError> {
         self.pass_on()
     }

@@ -1,5 +1,7 @@
 //! Attribute columns.
 
+use std::ops::Range;
+
 use shapeloom_core::Affine;
 use shapeloom_core::glam::DVec3;
 
@@ -117,7 +119,22 @@ impl Values {
         }
     }
 
-    fn bytes(&self) -> usize {
+    /// The values at these ranges, one range after the other, `total` in all.
+    pub(crate) fn pieces(&self, ranges: impl Iterator<Item = Range<usize>>, total: usize) -> Self {
+        fn pick<T: Copy>(values: &[T], ranges: impl Iterator<Item = Range<usize>>, total: usize) -> Vec<T> {
+            let mut out = Vec::with_capacity(total);
+            ranges.for_each(|range| out.extend_from_slice(&values[range]));
+            out
+        }
+        map_vector!(self, values => pick(values, ranges, total))
+    }
+
+    /// Whether two single values have the same bits.
+    pub(crate) fn same(&self, a: usize, b: usize) -> bool {
+        each_vector!(self, values => values[a].to_f64().to_bits() == values[b].to_f64().to_bits())
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
         let names = match self {
             Self::Text { names, .. } => names.iter().map(|name| name.len() + size_of::<String>()).sum(),
             _ => 0,
@@ -156,6 +173,15 @@ macro_rules! scalars {
 }
 
 scalars!(float f32, f64; whole i8, u8, i16, u16, i32, u32);
+
+/// The source with the largest weight, between equal weights the first.
+pub(crate) fn heaviest<'a>(terms: impl Iterator<Item = (&'a u32, &'a f64)>) -> Option<u32> {
+    let heavier = |best: Option<(u32, f64)>, (&source, &weight): (&u32, &f64)| match best {
+        Some((_, most)) if most >= weight => best,
+        _ => Some((source, weight)),
+    };
+    terms.fold(None, heavier).map(|(source, _)| source)
+}
 
 /// A named attribute: `width` values for each element, with the rules by which they blend and move.
 #[derive(Clone, Debug, PartialEq)]
@@ -341,11 +367,7 @@ impl Column {
                 let part = bounds[0] as usize..bounds[1] as usize;
                 let terms = sources[part.clone()].iter().zip(&weights[part]);
                 if column.blend == Blend::Copy {
-                    let heaviest = terms.fold(None, |best: Option<(u32, f64)>, (&source, &weight)| match best {
-                        Some((_, most)) if most >= weight => best,
-                        _ => Some((source, weight)),
-                    });
-                    let first = heaviest.map_or(0, |(source, _)| source as usize) * column.width;
+                    let first = heaviest(terms).unwrap_or(0) as usize * column.width;
                     out.extend_from_slice(&values[first..first + column.width]);
                     continue;
                 }

@@ -37,6 +37,15 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: u64,
     },
+    /// An edge names a vertex that does not exist.
+    EdgeOutOfRange {
+        /// The edge.
+        edge: u64,
+        /// The vertex that it names.
+        found: u64,
+        /// How many vertices there are.
+        vertices: u64,
+    },
     /// A polygon has fewer than three corners.
     TooFewCorners {
         /// The face.
@@ -89,6 +98,9 @@ impl fmt::Display for MeshError {
             Self::IndexOutOfRange { face, found, vertices } => {
                 write!(f, "face {face}: found vertex index {found}, expected one below {vertices}")
             }
+            Self::EdgeOutOfRange { edge, found, vertices } => {
+                write!(f, "edge {edge}: found vertex index {found}, expected one below {vertices}")
+            }
             Self::TooFewCorners { face, found } => {
                 write!(f, "face {face}: found {found} corners, expected at least 3")
             }
@@ -118,6 +130,7 @@ impl Diagnostic for MeshError {
     fn code(&self) -> &'static str {
         match self {
             Self::IndexOutOfRange { .. } => "E-mesh-index",
+            Self::EdgeOutOfRange { .. } => "E-mesh-edge",
             Self::TooFewCorners { .. } => "E-mesh-corners",
             Self::NotTriangle { .. } => "E-mesh-triangle",
             Self::FaceStarts { .. } => "E-mesh-starts",
@@ -156,6 +169,13 @@ pub enum AttributeError {
         /// The attribute.
         name: String,
     },
+    /// List starts that do not rise from 0 to the number of values.
+    ListStarts {
+        /// The attribute.
+        name: String,
+        /// The first element at fault.
+        element: usize,
+    },
     /// A column for another number of elements.
     Length {
         /// The attribute.
@@ -181,6 +201,9 @@ impl fmt::Display for AttributeError {
             Self::Text { name } => {
                 write!(f, "attribute \"{name}\": expected text of width 1, copied, each index with a name")
             }
+            Self::ListStarts { name, element } => {
+                write!(f, "attribute \"{name}\", element {element}: found a list that starts out of order")
+            }
             Self::Length { name, found, expected } => {
                 write!(f, "attribute \"{name}\": found {found} elements, expected {expected}")
             }
@@ -196,6 +219,7 @@ impl Diagnostic for AttributeError {
         match self {
             Self::Width { .. } => "E-attribute-width",
             Self::Text { .. } => "E-attribute-text",
+            Self::ListStarts { .. } => "E-attribute-list",
             Self::Length { .. } => "E-attribute-length",
             Self::Duplicate { .. } => "E-attribute-duplicate",
         }

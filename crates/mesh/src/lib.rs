@@ -2,9 +2,9 @@
 //!
 //! - [`TriMesh`] and [`PolyMesh`]: indexed faces with attribute columns on vertices, faces and wedges (the corners of
 //!   faces).
-//! - [`Polyline`], [`HeightField`], [`PointCloud`].
-//! - [`Column`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every operation by one
-//!   function, or their loss reported.
+//! - [`Polyline`], [`GeometricGraph`], [`HeightField`], [`PointCloud`].
+//! - [`Column`], [`ListColumn`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every
+//!   operation by one function, or their loss reported.
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
 //!   [`TriangulatePolygons`], [`TriangulateHeightField`].
 //! - [`primitives`]: ready shapes with closed-form facts.
@@ -17,7 +17,9 @@ mod collapsed;
 mod column;
 mod ear_clipping;
 mod error;
+mod geometric_graph;
 mod height_field;
+mod list_column;
 mod mesh_attributes;
 mod normals;
 mod point_cloud;
@@ -30,12 +32,14 @@ mod triangulate_polygons;
 mod vertex_normals;
 mod weld;
 
-pub use attributes::{Attributes, COLOR, NORMAL, PATCH, TEXCOORD};
+pub use attributes::{Attributes, COLOR, GROUP, MATERIAL, NORMAL, PATCH, SMOOTHING, TEXCOORD};
 pub use carry::{MeshOrigins, Origins, carry};
 pub use collapsed::collapsed_leave_traces;
 pub use column::{Blend, Column, TransformRule, Values};
 pub use error::{AttributeError, Domain, MeshError};
+pub use geometric_graph::GeometricGraph;
 pub use height_field::HeightField;
+pub use list_column::ListColumn;
 pub use mesh_attributes::MeshAttributes;
 pub use normals::{face_normals, newell_vector, triangle_normal};
 pub use point_cloud::PointCloud;

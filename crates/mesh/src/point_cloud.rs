@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine};
 
-use crate::{AttributeError, Attributes, Column};
+use crate::{AttributeError, Attributes, Column, ListColumn};
 
 /// Points in no order, with attribute columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,6 +40,14 @@ impl PointCloud {
     /// It has another number of elements, or its name is taken.
     pub fn insert_attribute(&mut self, column: Column) -> Result<(), AttributeError> {
         self.attributes.insert(column)
+    }
+
+    /// Adds a column of lists.
+    ///
+    /// # Errors
+    /// It has another number of elements, or its name is taken.
+    pub fn insert_list(&mut self, list: ListColumn) -> Result<(), AttributeError> {
+        self.attributes.insert_list(list)
     }
 
     /// The smallest box around the points.

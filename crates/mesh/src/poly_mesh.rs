@@ -7,7 +7,8 @@ use shapeloom_core::{Aabb, Affine};
 
 use crate::sums::compensated;
 use crate::{
-    AttributeError, Column, Domain, MeshAttributes, MeshError, MeshOrigins, Origins, TriMesh, carry, newell_vector,
+    AttributeError, Column, Domain, ListColumn, MeshAttributes, MeshError, MeshOrigins, Origins, TriMesh, carry,
+    newell_vector,
 };
 
 /// Polygons of three and more corners over shared vertices, counter-clockwise seen from outside, with attribute columns.
@@ -152,6 +153,19 @@ impl PolyMesh {
     /// It has another number of elements, or its name is taken.
     pub fn insert_attribute(&mut self, domain: Domain, column: Column) -> Result<(), AttributeError> {
         self.attributes.of_mut(domain).insert(column)
+    }
+
+    /// Takes a column out.
+    pub fn remove_attribute(&mut self, domain: Domain, name: &str) -> Option<Column> {
+        self.attributes.of_mut(domain).remove(name)
+    }
+
+    /// Adds a column of lists.
+    ///
+    /// # Errors
+    /// It has another number of elements, or its name is taken.
+    pub fn insert_list(&mut self, domain: Domain, list: ListColumn) -> Result<(), AttributeError> {
+        self.attributes.of_mut(domain).insert_list(list)
     }
 
     /// The smallest box around the vertices.

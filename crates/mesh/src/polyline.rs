@@ -4,7 +4,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine};
 
 use crate::sums::compensated;
-use crate::{AttributeError, Attributes, Column};
+use crate::{AttributeError, Attributes, Column, ListColumn};
 
 /// Points joined by straight segments, open or closed, with attribute columns on the points.
 ///
@@ -44,6 +44,14 @@ impl Polyline {
     /// It has another number of elements, or its name is taken.
     pub fn insert_attribute(&mut self, column: Column) -> Result<(), AttributeError> {
         self.attributes.insert(column)
+    }
+
+    /// Adds a column of lists.
+    ///
+    /// # Errors
+    /// It has another number of elements, or its name is taken.
+    pub fn insert_list(&mut self, list: ListColumn) -> Result<(), AttributeError> {
+        self.attributes.insert_list(list)
     }
 
     /// The segments in order.

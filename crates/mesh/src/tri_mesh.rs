@@ -4,7 +4,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine};
 
 use crate::sums::compensated;
-use crate::{AttributeError, Column, Domain, MeshAttributes, MeshError, MeshOrigins, Origins, carry};
+use crate::{AttributeError, Column, Domain, ListColumn, MeshAttributes, MeshError, MeshOrigins, Origins, carry};
 
 /// Triangles over shared vertices, counter-clockwise seen from outside, with attribute columns.
 ///
@@ -86,9 +86,22 @@ impl TriMesh {
         self.attributes.of_mut(domain).insert(column)
     }
 
+    /// Adds a column of lists.
+    ///
+    /// # Errors
+    /// It has another number of elements, or its name is taken.
+    pub fn insert_list(&mut self, domain: Domain, list: ListColumn) -> Result<(), AttributeError> {
+        self.attributes.of_mut(domain).insert_list(list)
+    }
+
     /// Takes a column out.
     pub fn remove_attribute(&mut self, domain: Domain, name: &str) -> Option<Column> {
         self.attributes.of_mut(domain).remove(name)
+    }
+
+    /// Takes a column of lists out.
+    pub fn remove_list(&mut self, domain: Domain, name: &str) -> Option<ListColumn> {
+        self.attributes.of_mut(domain).remove_list(name)
     }
 
     /// The three corners of a triangle.

@@ -7,7 +7,7 @@ use shapeloom_core::{
     Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Loss, Options, Report, options,
 };
 
-use crate::{Column, Domain, MeshError, MeshOrigins, Origins, TriMesh, carry, collapsed_leave_traces};
+use crate::{Column, Domain, ListColumn, MeshError, MeshOrigins, Origins, TriMesh, carry, collapsed_leave_traces};
 
 options! {
     /// Merges vertices that lie within a distance of each other, and drops triangles that collapse.
@@ -180,6 +180,13 @@ fn promote_disagreeing(mesh: &mut TriMesh, groups: &Groups, report: &mut Report)
             let corners = column.gathered(mesh.triangles().as_flattened());
             mesh.insert_attribute(Domain::Wedge, corners).expect("a wedge for each corner, and the name is free");
         }
+    }
+    let lists = mesh.attributes().vertex.lists().iter();
+    let disagree = |list: &&ListColumn| (0..groups.of.len()).any(|vertex| !list.same(vertex, groups.leader(vertex)));
+    let names: Vec<String> = lists.filter(disagree).map(|list| list.name().to_owned()).collect();
+    for name in names {
+        mesh.remove_list(Domain::Vertex, &name);
+        report.losses.push(Loss::new(format!("vertex list \"{name}\""), "merged vertices disagree"));
     }
 }
 

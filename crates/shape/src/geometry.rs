@@ -4,7 +4,7 @@ use std::fmt;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine, Category, Diagnostic};
-use shapeloom_mesh::{HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
+use shapeloom_mesh::{GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
 use shapeloom_parametric::{BezierCurve, BezierSurface};
 
 use crate::Kind;
@@ -21,6 +21,8 @@ pub enum Geometry {
     BezierSurface(BezierSurface),
     /// Points joined by segments.
     Polyline(Polyline),
+    /// Vertices and edges alone.
+    GeometricGraph(GeometricGraph),
     /// Heights over a grid.
     HeightField(HeightField),
     /// Indexed polygons.
@@ -37,6 +39,7 @@ impl Geometry {
             Self::BezierCurve(_) => Kind::BezierCurve,
             Self::BezierSurface(_) => Kind::BezierSurface,
             Self::Polyline(_) => Kind::Polyline,
+            Self::GeometricGraph(_) => Kind::GeometricGraph,
             Self::HeightField(_) => Kind::HeightField,
             Self::PolyMesh(_) => Kind::PolyMesh,
             Self::TriMesh(_) => Kind::TriMesh,
@@ -50,6 +53,7 @@ impl Geometry {
             Self::BezierCurve(curve) => curve.bounds(),
             Self::BezierSurface(surface) => surface.bounds(),
             Self::Polyline(line) => line.bounds(),
+            Self::GeometricGraph(graph) => graph.bounds(),
             Self::HeightField(field) => field.bounds(),
             Self::PolyMesh(mesh) => mesh.bounds(),
             Self::TriMesh(mesh) => mesh.bounds(),
@@ -64,6 +68,7 @@ impl Geometry {
             Self::BezierCurve(curve) => Self::BezierCurve(curve.transformed(map)),
             Self::BezierSurface(surface) => Self::BezierSurface(surface.transformed(map)),
             Self::Polyline(line) => Self::Polyline(line.transformed(map)),
+            Self::GeometricGraph(graph) => Self::GeometricGraph(graph.transformed(map)),
             Self::HeightField(field) => Self::HeightField(field.transformed(map)),
             Self::PolyMesh(mesh) => Self::PolyMesh(mesh.transformed(map)),
             Self::TriMesh(mesh) => Self::TriMesh(mesh.transformed(map)),
@@ -77,6 +82,7 @@ impl Geometry {
             Self::BezierCurve(curve) => size_of_val(curve.control_points()),
             Self::BezierSurface(surface) => surface.memory_bytes(),
             Self::Polyline(line) => line.memory_bytes(),
+            Self::GeometricGraph(graph) => graph.memory_bytes(),
             Self::HeightField(field) => field.memory_bytes(),
             Self::PolyMesh(mesh) => mesh.memory_bytes(),
             Self::TriMesh(mesh) => mesh.memory_bytes(),
@@ -149,6 +155,7 @@ holds!(
     BezierCurve(BezierCurve<DVec3>),
     BezierSurface(BezierSurface),
     Polyline(Polyline),
+    GeometricGraph(GeometricGraph),
     HeightField(HeightField),
     PolyMesh(PolyMesh),
     TriMesh(TriMesh),

@@ -31,6 +31,8 @@ pub enum Kind {
     BezierSurface,
     /// Points joined by segments.
     Polyline,
+    /// Vertices and edges alone.
+    GeometricGraph,
     /// Heights over a grid.
     HeightField,
     /// Indexed polygons.
@@ -41,11 +43,12 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind, in the order of the families.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::PointCloud,
         Self::BezierCurve,
         Self::BezierSurface,
         Self::Polyline,
+        Self::GeometricGraph,
         Self::HeightField,
         Self::PolyMesh,
         Self::TriMesh,
@@ -58,6 +61,7 @@ impl Kind {
             Self::BezierCurve => "bezier-curve",
             Self::BezierSurface => "bezier-surface",
             Self::Polyline => "polyline",
+            Self::GeometricGraph => "geometric-graph",
             Self::HeightField => "height-field",
             Self::PolyMesh => "poly-mesh",
             Self::TriMesh => "tri-mesh",
@@ -74,7 +78,9 @@ impl Kind {
         match self {
             Self::PointCloud => Family::Points,
             Self::BezierCurve | Self::BezierSurface => Family::Parametric,
-            Self::Polyline | Self::HeightField | Self::PolyMesh | Self::TriMesh => Family::Meshes,
+            Self::Polyline | Self::GeometricGraph | Self::HeightField | Self::PolyMesh | Self::TriMesh => {
+                Family::Meshes
+            }
         }
     }
 }

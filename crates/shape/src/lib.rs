@@ -8,10 +8,12 @@ mod geometry;
 mod kind;
 mod material;
 mod shape;
+mod table;
 mod units;
 
 pub use geometry::{Geometry, Representation, WrongKind};
 pub use kind::{Family, Kind};
 pub use material::Material;
 pub use shape::{Part, Shape};
+pub use table::Table;
 pub use units::{UnitError, Units, UpAxis};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use shapeloom_core::{Aabb, Affine};
 
-use crate::{Geometry, Kind, Material, Units, UpAxis};
+use crate::{Geometry, Kind, Material, Table, Units, UpAxis};
 
 /// A geometry placed in space.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +59,10 @@ pub struct Shape {
     pub units: Option<Units>,
     /// Which way is up, if that is known.
     pub up: Option<UpAxis>,
+    /// Rows of the file that are no elements of a part.
+    pub tables: Vec<Table>,
+    /// What the file says in words to its reader, a line or paragraph each.
+    pub comments: Vec<String>,
 }
 
 impl Shape {
@@ -95,11 +99,12 @@ impl Shape {
         moved
     }
 
-    /// The memory that the geometries take, in bytes; shared ones counted once.
+    /// The memory that the geometries and tables take, in bytes; shared geometries counted once.
     pub fn memory_bytes(&self) -> usize {
         let mut seen = HashSet::new();
         let first_seen = self.parts.iter().filter(|part| seen.insert(Arc::as_ptr(&part.geometry)));
-        first_seen.map(|part| part.geometry.memory_bytes()).sum()
+        let geometries: usize = first_seen.map(|part| part.geometry.memory_bytes()).sum();
+        geometries + self.tables.iter().map(Table::memory_bytes).sum::<usize>()
     }
 }
 

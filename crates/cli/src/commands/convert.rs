@@ -1,11 +1,12 @@
 //! `convert`: any file to any file.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::json;
 use shapeloom_convert::{Conversion, Job, Wish, convert_shape, plan};
 use shapeloom_core::{Category, Deviation, Report, Tolerance, ToleranceError};
-use shapeloom_io::{Format, WriteContext, format_by_id, format_for_output, write};
+use shapeloom_io::{Format, WriteContext, WriteOptions, format_by_id, format_for_output, write};
 use shapeloom_shape::{Kind, Shape};
 
 use super::draw;
@@ -14,17 +15,19 @@ use crate::account;
 use crate::arguments::{ConvertArguments, TargetArguments, WayArguments};
 use crate::failure::Failure;
 use crate::input::{self, is_stream};
-use crate::output::{check_apart, check_free, commit, stage};
+use crate::output::{Beside, check_apart, check_free, commit, is_regular, stage};
 use crate::session::Session;
+use crate::settings::Settings;
 
 pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let delivery = Delivery::new(&arguments.target)?;
+    let settings = Settings::sort(&arguments.way.settings);
+    let delivery = Delivery::new(&arguments.target, &settings)?;
     let tolerance = arguments.way.tolerance()?;
-    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     delivery.check(session)?;
     let wish = wish(&arguments.way, delivery.format.kinds)?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
-    let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
+    let job = Job { wish, tolerance, settings: settings.others };
     let source = json!({
         "name": input.name, "format": input.format.id, "bytes": input.bytes,
         "findings": account::findings(&input.read.findings), "losses": account::losses(&input.read.losses),
@@ -83,13 +86,15 @@ pub(crate) fn absolute(tolerance: Tolerance, shape: &Shape, wish: &Wish) -> Resu
 pub(crate) struct Delivery<'a> {
     target: &'a TargetArguments,
     pub(crate) format: &'static Format,
+    options: WriteOptions,
 }
 
 impl<'a> Delivery<'a> {
     /// # Errors
     /// No format that can be written is named or told by the extension.
-    pub(crate) fn new(target: &'a TargetArguments) -> Result<Self, Failure> {
-        Ok(Self { target, format: output_format(&target.output, target.to.as_deref())? })
+    pub(crate) fn new(target: &'a TargetArguments, settings: &Settings) -> Result<Self, Failure> {
+        let format = output_format(&target.output, target.to.as_deref())?;
+        Ok(Self { target, format, options: settings.writing(format)? })
     }
 
     /// Every output, the shape's own first.
@@ -129,14 +134,31 @@ impl<'a> Delivery<'a> {
         session.stage("writing");
         let before = made.then(conversion.deviation);
         let strict = session.globals.strict;
+        let beside = Arc::new(Beside::default());
+        let output = &self.target.output;
+        let context = WriteContext {
+            exec,
+            options: self.options.clone(),
+            name: output.display().to_string(),
+            siblings: if is_regular(output) { Some(beside.clone()) } else { None },
+        };
         let mut staged = vec![stage(&self.target.output, self.target.force, |out| {
-            let report = write(&conversion.shape, self.format, &WriteContext { exec, ..WriteContext::default() }, out)?;
+            let report = write(&conversion.shape, self.format, &context, out)?;
             if strict {
                 check_strict(before.then(report.deviation), job.tolerance)?;
             }
             written = Some(report);
             Ok(())
         })?];
+        let mut names = vec![output.display().to_string()];
+        for (name, bytes) in beside.take() {
+            let path = output.with_file_name(name.as_str());
+            check_free(&path, self.target.force)?;
+            names.push(path.display().to_string());
+            staged.push(stage(&path, self.target.force, |out| {
+                out.write_all(&bytes).map_err(|error| Failure::write(&path, &error))
+            })?);
+        }
         let written = written.unwrap_or_else(|| Report::exact("write", ""));
         let deviation = before.then(written.deviation);
         let account = json!({
@@ -163,14 +185,22 @@ impl<'a> Delivery<'a> {
             })?);
         }
         commit(staged, session)?;
-        self.tell(&conversion, &written, deviation, session);
+        names.extend(self.paths().skip(1).map(|path| path.display().to_string()));
+        self.tell(&conversion, &written, deviation, &names, session);
         if session.globals.json {
             session.print_json(&account)?;
         }
         Ok(())
     }
 
-    fn tell(&self, conversion: &Conversion, written: &Report, deviation: Deviation, session: &mut Session<'_>) {
+    fn tell(
+        &self,
+        conversion: &Conversion,
+        written: &Report,
+        deviation: Deviation,
+        names: &[String],
+        session: &mut Session<'_>,
+    ) {
         for (index, step) in conversion.steps.iter().enumerate() {
             let seconds = session.globals.timings.then(|| conversion.timings.seconds[index]);
             session.say(account::step_words(step, seconds));
@@ -189,7 +219,6 @@ impl<'a> Delivery<'a> {
         for loss in &written.losses {
             session.say(format_args!("lost: {loss}"));
         }
-        let names: Vec<String> = self.paths().map(|path| path.display().to_string()).collect();
         session.say(format_args!("wrote {}; error {deviation}", names.join(", ")));
     }
 }

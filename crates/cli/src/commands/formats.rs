@@ -21,6 +21,8 @@ pub(crate) fn run(session: &mut Session<'_>) -> Result<(), Failure> {
                     "precision": format.precision.name(),
                     "kinds": format.kinds.iter().map(|kind| kind.name()).collect::<Vec<_>>(),
                     "keeps": format.keeps.iter().map(|keeps| keeps.name()).collect::<Vec<_>>(),
+                    "read_options": format.read_options,
+                    "write_options": format.write_options,
                     "reads": format.reads.is_some(),
                     "writes": format.writes.is_some(),
                 })

@@ -5,16 +5,23 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 use shapeloom_core::Exec;
 use shapeloom_mesh::{Attributes, Domain, MeshAttributes, PolyMesh, TriMesh};
-use shapeloom_shape::{Geometry, Part, Shape};
+use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use crate::account;
 use crate::arguments::InfoArguments;
 use crate::failure::Failure;
 use crate::input;
 use crate::session::Session;
+use crate::settings::Settings;
 
 pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let settings = Settings::sort(&arguments.settings);
+    settings.no_writing()?;
+    let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
+    if let Some((key, _)) = settings.others.first() {
+        let message = format!("found --set {key}, expected an option of the input");
+        return Err(Failure::usage("E-usage-setting", message));
+    }
     let mut object = describe(&input.read.shape, &session.exec())?;
     object.insert("schema".into(), json!("shapeloom.info/1"));
     object.insert("file".into(), json!(input.name));
@@ -35,7 +42,8 @@ fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
         _ => "mixed",
     };
     object.insert("kind".into(), json!(kind));
-    let mut totals = Totals::default();
+    let meshes = kinds.iter().any(|kind| matches!(kind, Kind::TriMesh | Kind::PolyMesh));
+    let mut totals = Totals { meshes, ..Totals::default() };
     let mut parts = Vec::new();
     for part in &shape.parts {
         exec.check()?;
@@ -57,16 +65,26 @@ fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
     }
     let materials: Vec<&str> = shape.materials.iter().map(|material| material.name.as_str()).collect();
     object.insert("materials".into(), json!(materials));
+    let tables = shape.tables.iter().map(|table| {
+        let columns = table.columns.iter().map(|column| column.name());
+        let lists = table.columns.lists().iter().map(|list| list.name());
+        let names: Vec<&str> = columns.chain(lists).collect();
+        json!({ "name": table.name, "rows": table.columns.len(), "columns": names })
+    });
+    object.insert("tables".into(), tables.collect());
+    object.insert("comments".into(), json!(shape.comments));
     Ok(object)
 }
 
 /// Counts that add up over parts; those of kinds that do not occur stay away.
 #[derive(Default)]
 struct Totals {
+    meshes: bool,
     counts: Map<String, Value>,
     area: Option<f64>,
     volume: Option<f64>,
-    attributes: BTreeSet<(String, String, usize, &'static str)>,
+    /// Domain, name, width (none for lists) and type.
+    attributes: BTreeSet<(String, String, Option<usize>, String)>,
 }
 
 impl Totals {
@@ -76,16 +94,20 @@ impl Totals {
         self.counts.insert(name.into(), json!(before + found as u64));
     }
 
-    fn attributes(&mut self, domain: Domain, attributes: &Attributes) {
+    fn attributes(&mut self, domain: &str, attributes: &Attributes) {
         for column in attributes {
             let (name, kind) = (column.name().to_owned(), column.values().type_name());
-            self.attributes.insert((domain.to_string(), name, column.width(), kind));
+            self.attributes.insert((domain.to_owned(), name, Some(column.width()), kind.to_owned()));
+        }
+        for list in attributes.lists() {
+            let (name, kind) = (list.name().to_owned(), format!("list of {}", list.values().type_name()));
+            self.attributes.insert((domain.to_owned(), name, None, kind));
         }
     }
 
     fn mesh_attributes(&mut self, attributes: &MeshAttributes) {
         for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
-            self.attributes(domain, attributes.of(domain));
+            self.attributes(&domain.to_string(), attributes.of(domain));
         }
     }
 
@@ -123,14 +145,24 @@ impl Totals {
             }
             Geometry::PointCloud(cloud) => {
                 self.count(&mut object, "points", cloud.positions().len());
-                self.attributes(Domain::Vertex, cloud.attributes());
+                self.attributes("vertex", cloud.attributes());
             }
             Geometry::Polyline(line) => {
                 self.count(&mut object, "points", line.points().len());
                 self.count(&mut object, "segments", line.segments().count());
                 object.insert("length".into(), account::number(line.length()));
                 object.insert("closed".into(), json!(line.is_closed()));
-                self.attributes(Domain::Vertex, line.attributes());
+                self.attributes("vertex", line.attributes());
+            }
+            Geometry::GeometricGraph(graph) => {
+                // Beside meshes the totals are those of the meshes.
+                let (vertices, edges) =
+                    if self.meshes { ("graph_vertices", "graph_edges") } else { ("vertices", "edges") };
+                self.count(&mut object, vertices, graph.positions().len());
+                self.count(&mut object, edges, graph.edges().len());
+                object.insert("length".into(), account::number(graph.length()));
+                self.attributes("vertex", graph.vertex_attributes());
+                self.attributes("edge", graph.edge_attributes());
             }
             Geometry::HeightField(field) => {
                 self.count(&mut object, "samples", field.heights().len());
@@ -159,7 +191,10 @@ impl Totals {
             object.insert("area".into(), account::number(area));
             object.insert("volume".into(), account::number(volume));
         }
-        let one = |(domain, name, width, kind): (String, String, usize, &str)| json!({ "domain": domain, "name": name, "width": width, "type": kind });
+        let one = |(domain, name, width, kind): (String, String, Option<usize>, String)| match width {
+            Some(width) => json!({ "domain": domain, "name": name, "width": width, "type": kind }),
+            None => json!({ "domain": domain, "name": name, "type": kind }),
+        };
         object.insert("attributes".into(), self.attributes.into_iter().map(one).collect());
     }
 }

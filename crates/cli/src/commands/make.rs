@@ -12,11 +12,13 @@ use crate::account;
 use crate::arguments::MakeArguments;
 use crate::failure::Failure;
 use crate::session::Session;
+use crate::settings;
 
 pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let delivery = Delivery::new(&arguments.target)?;
+    let settings = settings::Settings::sort(&arguments.settings);
+    let delivery = Delivery::new(&arguments.target, &settings)?;
     delivery.check(session)?;
-    let made = make(&arguments.shape, &arguments.settings, &session.exec())?;
+    let made = make(&arguments.shape, &settings.others, &session.exec())?;
     session.say(format_args!(
         "{}: {} faces; error {}",
         arguments.shape,

@@ -15,6 +15,7 @@ use crate::failure::Failure;
 use crate::input::{self, is_stream};
 use crate::output::{check_free, commit, stage};
 use crate::session::Session;
+use crate::settings::Settings;
 
 pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Result<(), Failure> {
     let tolerance = arguments.way.tolerance()?;
@@ -33,10 +34,12 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
         return Err(Failure::usage("E-usage-outputs", message));
     }
     paths.iter().try_for_each(|path| check_free(path, arguments.force))?;
-    let input = input::open(&arguments.input, arguments.from.as_deref(), session)?;
+    let settings = Settings::sort(&arguments.way.settings);
+    settings.no_writing()?;
+    let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     let wish = wish(&arguments.way, &[Kind::TriMesh])?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
-    let job = Job { wish, tolerance, settings: arguments.way.settings.clone() };
+    let job = Job { wish, tolerance, settings: settings.others };
     session.stage("converting");
     let scene = Stage::new(&input.read.shape, &job, session)?;
     if session.globals.strict {

@@ -37,7 +37,7 @@ use shapeloom_shape::{Kind, UpAxis};
 
 use crate::{Format, Keeps, Precision, Sniff};
 
-const KINDS: &[Kind] = &[Kind::PointCloud, Kind::Polyline, Kind::TriMesh];
+const KINDS: &[Kind] = &[Kind::PointCloud, Kind::Polyline, Kind::GeometricGraph, Kind::TriMesh];
 
 const KEEPS: &[Keeps] = &[
     Keeps::Normals,

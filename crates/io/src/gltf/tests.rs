@@ -75,6 +75,7 @@ fn scene() -> Shape {
         materials: vec![Material::default(), red],
         units: Some(Units::MILLIMETERS),
         up: Some(UpAxis::Z),
+        ..Shape::default()
     }
 }
 

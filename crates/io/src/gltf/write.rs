@@ -24,6 +24,7 @@ const BIN_CHUNK: u32 = u32::from_le_bytes(*b"BIN\0");
 const TRIANGLES: u64 = 4;
 const LINE_STRIP: u64 = 3;
 const LINE_LOOP: u64 = 2;
+const LINES: u64 = 1;
 const POINTS: u64 = 0;
 
 pub(super) fn write_glb(shape: &Shape, context: &WriteContext, out: &mut dyn Write) -> Result<Report, WriteError> {
@@ -177,6 +178,7 @@ impl Writer {
             Geometry::TriMesh(mesh) => (TRIANGLES, 1, mesh.triangles().is_empty()),
             Geometry::Polyline(line) if line.is_closed() => (LINE_LOOP, 2, points.len() < 2),
             Geometry::Polyline(_) => (LINE_STRIP, 2, points.len() < 2),
+            Geometry::GeometricGraph(graph) => (LINES, 1, graph.edges().is_empty()),
             _ => (POINTS, 1, points.is_empty()),
         };
         if too_small {
@@ -216,6 +218,9 @@ impl Writer {
         primitive.insert("attributes".into(), sorted(attributes));
         if let Some(split) = &split {
             primitive.insert("indices".into(), self.bin.indices(split.triangles.as_flattened(), points.len()));
+        }
+        if let Geometry::GeometricGraph(graph) = &*geometry {
+            primitive.insert("indices".into(), self.bin.indices(graph.edges().as_flattened(), points.len()));
         }
         primitive.insert("mode".into(), mode.into());
         self.vertices += points.len();

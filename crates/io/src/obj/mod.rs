@@ -1,9 +1,18 @@
-//! Wavefront OBJ, written.
+//! Wavefront OBJ, read and written.
 //!
 //! Conventions: decimal numbers are the shortest that read back to the same bits; texture coordinates have v running
-//! up; colours follow the position as fractions in sRGB; each part is an object `o`; lines are `l`, points `p`. Texture
-//! coordinates and normals that are equal bit by bit are written once in a file.
+//! up; colours follow the position as fractions in sRGB; each part is an object `o`; lines are `l`, points `p`. Groups,
+//! smoothing groups and materials of faces are columns. Texture coordinates and normals that are equal bit by bit are
+//! written once in a file; materials go into a library beside it.
 
+mod assemble;
+mod freeform;
+mod labels;
+mod mtl;
+mod read;
+#[cfg(test)]
+mod read_tests;
+mod statements;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -12,6 +21,9 @@ use shapeloom_shape::Kind;
 
 use crate::text::{Text, parse_number};
 use crate::{Format, Keeps, Precision, Sniff};
+
+/// The word of programs for no material.
+const NO_MATERIAL: &str = "(null)";
 
 /// Wavefront OBJ.
 pub(crate) const FORMAT: Format = Format {
@@ -22,12 +34,20 @@ pub(crate) const FORMAT: Format = Format {
     text: true,
     up: None,
     precision: Precision::F64,
-    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::PolyMesh, Kind::TriMesh],
-    keeps: &[Keeps::Normals, Keeps::Texcoords, Keeps::Colors, Keeps::Wedges, Keeps::Names, Keeps::Parts],
+    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::GeometricGraph, Kind::PolyMesh, Kind::TriMesh],
+    keeps: &[
+        Keeps::Normals,
+        Keeps::Texcoords,
+        Keeps::Colors,
+        Keeps::Wedges,
+        Keeps::Names,
+        Keeps::Parts,
+        Keeps::Materials,
+    ],
     read_options: &[],
     write_options: &[],
     sniff,
-    reads: None,
+    reads: Some(read::read),
     writes: Some(write::write),
 };
 

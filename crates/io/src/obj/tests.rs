@@ -2,7 +2,9 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Affine, Report};
-use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, PointCloud, PolyMesh, Polyline, TEXCOORD, TriMesh, Values};
+use shapeloom_mesh::{
+    COLOR, Column, Domain, GeometricGraph, NORMAL, PointCloud, PolyMesh, Polyline, TEXCOORD, TriMesh, Values,
+};
 use shapeloom_shape::{Material, Part, Shape};
 
 use crate::{WriteContext, detect, format_by_id, write};
@@ -92,9 +94,10 @@ fn texture_coordinates_and_normals_are_written_once() {
         [
             "placements of 1 parts",
             "1 instances of shared geometries",
+            "material name \"\"",
             "material \"\"",
-            "part name \" a\\nb \"",
             "face attribute \"patch\"",
+            "part name \" a\\nb \"",
         ]
     );
 }
@@ -106,10 +109,13 @@ fn polygons_lines_and_points_have_their_words() {
     let mut cloud = PointCloud::new(points[..2].to_vec());
     cloud.insert_attribute(Column::normals(NORMAL, &[DVec3::Z; 2])).unwrap();
     let ring = Polyline::new(points[..3].to_vec(), true);
-    let parts = vec![Part::new(polygon), Part::new(ring), Part::new(cloud)];
+    let graph = GeometricGraph::try_new(points.clone(), vec![[3, 1], [0, 1]]).unwrap();
+    let parts = vec![Part::new(polygon), Part::new(ring), Part::new(cloud), Part::new(graph)];
     let (obj, report) = to_obj(&Shape { parts, ..Shape::default() });
     let words: Vec<(&str, Vec<usize>)> =
         obj.elements.iter().map(|(word, corners)| (word.as_str(), corners.iter().map(|c| c[0]).collect())).collect();
-    assert_eq!(words, [("f", vec![1, 2, 3, 4]), ("l", vec![5, 6, 7, 5]), ("p", vec![8]), ("p", vec![9])]);
+    let lines = [("l", vec![13, 11]), ("l", vec![10, 11])];
+    assert_eq!(words[..4], [("f", vec![1, 2, 3, 4]), ("l", vec![5, 6, 7, 5]), ("p", vec![8]), ("p", vec![9])]);
+    assert_eq!(words[4..], lines);
     assert_eq!(report.losses[0].what, "vertex attribute \"normal\"");
 }

@@ -10,7 +10,7 @@ use super::counts::{Counts, counts, dimension};
 use super::header::{Header, header};
 use super::rows::{Reader, Rows, lines_with_words, words_left};
 use crate::memory::Memory;
-use crate::text::{Scanner, end_place, findings_in_lines, in_lines, never_joined, pieces, plain_text};
+use crate::text::{Scanner, end_place, in_lines, line_place, never_joined, pieces, plain_text};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
@@ -63,7 +63,8 @@ pub(super) fn read_text(
         false => place_of_row(text, start, counts.vertices + face as u64),
     };
     let found = body.into_shape(&rows.layout, &mut memory, context, place)?;
-    Ok(ReadShape { findings: findings_in_lines(text, &found.findings), ..found })
+    let findings = found.findings.with_places(|place| line_place(text, place));
+    Ok(ReadShape { findings, ..found })
 }
 
 /// What rows look like, from the first vertex, and whether vertices lie several on a line: that is so where there are

@@ -9,9 +9,10 @@ use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, TEXCOORD, Values};
 use shapeloom_shape::{Geometry, Shape};
 
 use super::{COLORMAP, FORMAT, NO_INDEX};
+use crate::color::linear;
 use crate::placed::{Losses, columns_of, frame_losses, moved, placed_part, points_of};
 use crate::sink::Sink;
-use crate::text::{push_shortest, push_whole};
+use crate::text::{push_count, push_number};
 use crate::{Encoding, WriteContext, WriteError};
 
 pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) -> Result<Report, WriteError> {
@@ -160,11 +161,11 @@ impl Writer<'_> {
                 single.to_array().iter().for_each(|number| self.row.extend_from_slice(&number.to_be_bytes()));
             } else {
                 let DVec3 { x, y, z } = point;
-                push_shortest(&mut self.row, x);
+                push_number(&mut self.row, x);
                 self.row.push(b' ');
-                push_shortest(&mut self.row, y);
+                push_number(&mut self.row, y);
                 self.row.push(b' ');
-                push_shortest(&mut self.row, z);
+                push_number(&mut self.row, z);
             }
             if let Some(column) = normals {
                 (0..3).for_each(|component| self.number(column.number(vertex, component)));
@@ -194,7 +195,7 @@ impl Writer<'_> {
             self.row.extend_from_slice(&(number as f32).to_be_bytes());
         } else {
             self.row.push(b' ');
-            push_shortest(&mut self.row, number);
+            push_number(&mut self.row, number);
         }
     }
 
@@ -210,7 +211,7 @@ impl Writer<'_> {
                 (true, bytes) => self.number(if bytes { number / 255.0 } else { number }),
                 (false, true) => {
                     self.row.push(b' ');
-                    push_whole(&mut self.row, number as u8);
+                    push_count(&mut self.row, number as u64);
                 }
                 (false, false) => {
                     let start = self.row.len();
@@ -233,11 +234,11 @@ impl Writer<'_> {
                 mesh.triangles().iter().try_for_each(|&[a, b, c]| {
                     self.row.clear();
                     self.row.extend_from_slice(b"3 ");
-                    push_whole(&mut self.row, first + a);
+                    push_count(&mut self.row, u64::from(first + a));
                     self.row.push(b' ');
-                    push_whole(&mut self.row, first + b);
+                    push_count(&mut self.row, u64::from(first + b));
                     self.row.push(b' ');
-                    push_whole(&mut self.row, first + c);
+                    push_count(&mut self.row, u64::from(first + c));
                     self.row.push(b'\n');
                     self.sink.bytes(&self.row)
                 })
@@ -270,10 +271,10 @@ impl Writer<'_> {
             let channels: i32 = if colors.is_some() { 4 } else { i32::from(index.is_some()) };
             self.row.extend_from_slice(&channels.to_be_bytes());
         } else {
-            push_whole(&mut self.row, corners.len());
+            push_count(&mut self.row, corners.len() as u64);
             for corner in corners {
                 self.row.push(b' ');
-                push_whole(&mut self.row, first + corner);
+                push_count(&mut self.row, u64::from(first + corner));
             }
         }
         if let Some((column, channels)) = colors {
@@ -283,17 +284,12 @@ impl Writer<'_> {
             Some(index) if self.layout.binary => self.number(index),
             Some(index) => {
                 self.row.push(b' ');
-                push_whole(&mut self.row, index as u32);
+                push_count(&mut self.row, index as u64);
             }
             None => {}
         }
         self.end_row()
     }
-}
-
-/// The linear intensity of an sRGB fraction from 0 to 1 (IEC 61966-2-1).
-fn linear(srgb: f64) -> f64 {
-    if srgb <= 0.040_45 { srgb / 12.92 } else { ((srgb + 0.055) / 1.055).powf(2.4) }
 }
 
 /// How the colours of all parts are written, if all have them in one type.

@@ -3,7 +3,7 @@
 //! Conventions: positions `x y z`, normals `nx ny nz`, texture coordinates `s t` with v running up, colours
 //! `red green blue alpha` in bytes as sRGB; a column of another name is a property of that name, or `name_0`, `name_1`
 //! and so on where it has several numbers. Faces are `vertex_indices`, and the texture coordinates of their corners the
-//! customary list `texcoord`, two numbers a corner; segments of lines are elements `edge`. Floating numbers are `float`
+//! customary list `texcoord`, two numbers a corner; segments of lines and edges of graphs are elements `edge`. Floating numbers are `float`
 //! where that is exact, else `double`. Parts are put together where they are placed; a column is kept if every part has
 //! it in the same type.
 
@@ -12,7 +12,6 @@ mod properties;
 mod tests;
 mod write;
 
-pub(crate) use properties::srgb;
 use shapeloom_shape::Kind;
 
 use crate::{Format, Keeps, Precision, Sniff};
@@ -26,7 +25,7 @@ pub(crate) const FORMAT: Format = Format {
     text: false,
     up: None,
     precision: Precision::F64,
-    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::PolyMesh, Kind::TriMesh],
+    kinds: &[Kind::PointCloud, Kind::Polyline, Kind::GeometricGraph, Kind::PolyMesh, Kind::TriMesh],
     keeps: &[Keeps::Normals, Keeps::Texcoords, Keeps::Colors, Keeps::VertexColumns, Keeps::FaceColumns],
     read_options: &[],
     write_options: &[],

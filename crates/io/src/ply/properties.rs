@@ -5,6 +5,7 @@ use std::sync::Arc;
 use shapeloom_mesh::{Attributes, COLOR, Column, Domain, NORMAL, TEXCOORD, Values};
 use shapeloom_shape::Geometry;
 
+use crate::color::srgb;
 use crate::placed::{Losses, columns_of};
 
 /// The type of a property.
@@ -90,11 +91,6 @@ impl Property {
             }
         }
     }
-}
-
-/// The sRGB value of a linear intensity from 0 to 1 (IEC 61966-2-1).
-pub(crate) fn srgb(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 /// The properties for the columns that all of these geometries have; the others are lost.

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Affine, Deviation, Report};
-use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, PointCloud, PolyMesh, Polyline, TEXCOORD, TriMesh, Values};
+use shapeloom_mesh::{
+    COLOR, Column, Domain, GeometricGraph, NORMAL, PointCloud, PolyMesh, Polyline, TEXCOORD, TriMesh, Values,
+};
 use shapeloom_shape::{Part, Shape, UpAxis};
 
 use crate::{WriteContext, format_by_id, write};
@@ -121,19 +123,21 @@ fn parts_are_put_together_where_they_are() {
         Part::new(polygon),
         Part::new(line),
         Part::new(PointCloud::new(vec![DVec3::splat(9.0)])),
+        Part::new(GeometricGraph::try_new(vec![DVec3::ZERO; 3], vec![[2, 0], [1, 1]]).unwrap()),
     ];
     let (rows, report, _) = to_ply(&Shape { parts, up: Some(UpAxis::Z), ..Shape::default() });
-    assert_eq!((rows["vertex"].len(), rows["face"].len(), rows["edge"].len()), (308, 3, 3));
+    assert_eq!((rows["vertex"].len(), rows["face"].len(), rows["edge"].len()), (311, 3, 5));
     // The mirrored face is reversed, so that its front stays in front.
     assert_eq!(rows["face"][0]["vertex_indices"], [0.0, 2.0, 1.0]);
     assert_eq!(rows["vertex"][1]["x"], [-1.0]);
     assert_eq!(rows["face"][2]["vertex_indices"][299], 303.0);
     let edge = |i: usize| [rows["edge"][i]["vertex1"][0], rows["edge"][i]["vertex2"][0]];
     assert_eq!([edge(0), edge(2)], [[304.0, 305.0], [306.0, 304.0]]);
+    assert_eq!([edge(3), edge(4)], [[310.0, 308.0], [309.0, 309.0]]);
     assert_eq!(rows["vertex"][307]["z"], [9.0]);
     let whats: Vec<&str> = report.losses.iter().map(|loss| loss.what.as_str()).collect();
     for what in [
-        "4 separate parts",
+        "5 separate parts",
         "placements of 1 parts",
         "part name \"square\"",
         "up axis (z)",

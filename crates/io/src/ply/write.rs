@@ -38,14 +38,20 @@ pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) 
     layout.faces(&parts, &mut sink)?;
     let mut first = 0;
     for part in &parts {
-        if let Geometry::Polyline(line) = &**part {
-            let count = line.points().len();
-            for index in 0..line.segments().count() {
-                row.clear();
-                Type::Int.put((first + index) as f64, &mut row);
-                Type::Int.put((first + (index + 1) % count) as f64, &mut row);
-                sink.bytes(&row)?;
+        let mut edge = |ends: [usize; 2]| {
+            row.clear();
+            ends.into_iter().for_each(|end| Type::Int.put((first + end) as f64, &mut row));
+            sink.bytes(&row)
+        };
+        match &**part {
+            Geometry::Polyline(line) => {
+                let count = line.points().len();
+                (0..line.segments().count()).try_for_each(|start| edge([start, (start + 1) % count]))?;
             }
+            Geometry::GeometricGraph(graph) => {
+                graph.edges().iter().try_for_each(|ends| edge(ends.map(|end| end as usize)))?;
+            }
+            _ => {}
         }
         first += points_of(part).map_or(0, <[_]>::len);
     }
@@ -202,6 +208,7 @@ fn face_count(part: &Geometry) -> usize {
 fn edge_count(part: &Geometry) -> usize {
     match part {
         Geometry::Polyline(line) => line.segments().count(),
+        Geometry::GeometricGraph(graph) => graph.edges().len(),
         _ => 0,
     }
 }

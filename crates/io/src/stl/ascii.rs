@@ -12,7 +12,7 @@ use super::binary::too_many;
 use super::weld::{BATCH, Welder};
 use crate::audit::degenerate_faces;
 use crate::memory::{Growing, Memory};
-use crate::text::{NumberFault, Scanner, end_place, findings_in_lines, in_lines, pieces, plain_text};
+use crate::text::{NumberFault, Scanner, end_place, in_lines, line_place, pieces, plain_text};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 /// How far into a file words are looked for that tell text from binary.
@@ -115,7 +115,7 @@ pub(super) fn read_pieces(text: &[u8], cuts: &[Range<usize>], context: &ReadCont
         findings.push("W-stl-empty", Severity::Warning, Place::Byte(0), "the file has no facets");
     }
     let shape = Shape { parts, ..Shape::default() };
-    Ok(ReadShape { findings: findings_in_lines(text, &findings), ..ReadShape::new(shape) })
+    Ok(ReadShape { findings: findings.with_places(|place| line_place(text, place)), ..ReadShape::new(shape) })
 }
 
 /// A solid as a part.

@@ -12,7 +12,7 @@ use super::color::{narrowed, rounding};
 use super::{COUNT, FACET, FORMAT};
 use crate::placed::{Losses, columns_of, frame_losses, placed_part};
 use crate::sink::Sink;
-use crate::text::push_shortest;
+use crate::text::{push_number, push_single};
 use crate::{Encoding, Format, Keeps, WriteContext, WriteError};
 
 /// What a binary file keeps: it has no names and one list of facets.
@@ -225,14 +225,11 @@ fn write_text(
                 let corners = mesh.corners(face);
                 row.extend_from_slice(b"facet normal");
                 // Readers take it from the corners: seven digits are many.
-                push_vector(&mut row, normal(corners), |out, number| {
-                    let mut buffer = zmij::Buffer::new();
-                    out.extend_from_slice(buffer.format_finite(number as f32).as_bytes());
-                });
+                push_vector(&mut row, normal(corners), |out, number| push_single(out, number as f32));
                 row.extend_from_slice(b"\n outer loop\n");
                 for corner in corners {
                     row.extend_from_slice(b"  vertex");
-                    push_vector(&mut row, corner, push_shortest);
+                    push_vector(&mut row, corner, push_number);
                     row.push(b'\n');
                 }
                 row.extend_from_slice(b" endloop\nendfacet\n");

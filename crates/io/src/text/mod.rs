@@ -12,6 +12,5 @@ pub use numbers::{CountFault, NumberFault, parse_count, parse_number};
 #[cfg(test)]
 pub(crate) use pieces::cut;
 pub(crate) use pieces::{never_joined, pieces};
-pub(crate) use scanner::{Scanner, end_place, findings_in_lines, in_lines, line_place, plain_text};
-pub use shortest::shortest;
-pub(crate) use shortest::{push_shortest, push_whole};
+pub(crate) use scanner::{Scanner, end_place, in_lines, line_place, plain_text};
+pub use shortest::{push_count, push_integer, push_number, push_single, shortest};

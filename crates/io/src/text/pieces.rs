@@ -16,7 +16,6 @@ pub(crate) fn pieces(text: &[u8], from: usize, exec: &Exec, joined: fn(&[u8]) ->
     cut(text, from, size, joined)
 }
 
-/// The same in pieces of about that many bytes.
 pub(crate) fn cut(text: &[u8], from: usize, size: usize, joined: fn(&[u8]) -> bool) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut start = from.min(text.len());

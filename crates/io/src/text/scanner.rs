@@ -1,6 +1,6 @@
 //! Text scanned line by line at full speed.
 
-use shapeloom_core::{Findings, Limits, Place};
+use shapeloom_core::{Limits, Place};
 
 use super::decimal::{decimal, digits};
 use super::lines::quoted;
@@ -159,6 +159,26 @@ impl<'a> Scanner<'a> {
         Ok(value)
     }
 
+    /// A whole number that may be negative and need not end its word: its size and whether it is negative. Passes over
+    /// it.
+    ///
+    /// # Errors
+    /// No digit follows, or more than 19; it stands where it stood.
+    #[inline]
+    pub(crate) fn signed_part(&mut self) -> Result<(u64, bool), CountFault> {
+        let negative = self.peek() == Some(b'-');
+        let first = self.at + usize::from(negative);
+        let (value, end) = digits(self.text, first, 0);
+        match end - first {
+            0 => Err(CountFault::Syntax),
+            1..=19 => {
+                self.at = end;
+                Ok((value, negative))
+            }
+            _ => Err(CountFault::Overflow),
+        }
+    }
+
     #[inline]
     fn ends_word(&self, taken: usize) -> bool {
         match self.text.get(self.at + taken) {
@@ -220,10 +240,12 @@ pub(crate) fn in_lines(text: &[u8], mut fault: Box<Fault>) -> Box<Fault> {
     fault
 }
 
-/// An offset made a line of its text; other places stay.
+/// An offset made a line of its text; other places stay, and so does an offset where there is no text.
 pub(crate) fn line_place(text: &[u8], place: Place) -> Place {
     match place {
-        Place::Byte(offset) => Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX))),
+        Place::Byte(offset) if !text.is_empty() => {
+            Place::line(line_at(text, usize::try_from(offset).unwrap_or(usize::MAX)))
+        }
         place => place,
     }
 }
@@ -232,21 +254,6 @@ pub(crate) fn line_place(text: &[u8], place: Place) -> Place {
 pub(crate) fn end_place(text: &[u8]) -> Place {
     let last = line_at(text, text.len());
     Place::line(if matches!(text.last(), Some(b'\n' | b'\r')) { last + 1 } else { last })
-}
-
-/// The same findings with offsets made lines of their text.
-pub(crate) fn findings_in_lines(text: &[u8], findings: &Findings) -> Findings {
-    let mut in_lines = Findings::default();
-    for finding in findings {
-        let known = finding.places.len() as u64;
-        for (rank, place) in finding.places.iter().enumerate() {
-            // Those whose places were not kept are counted with the first.
-            let count = if rank == 0 { finding.count - (known - 1) } else { 1 };
-            let place = line_place(text, place.clone());
-            in_lines.push_many(finding.code, finding.severity, place, finding.message.as_str(), count);
-        }
-    }
-    in_lines
 }
 
 /// A text without its byte order mark, within the limits of lines.
@@ -318,20 +325,6 @@ mod tests {
         let lines: Vec<u64> = (0..text.len() + 2).map(|offset| line_at(text, offset)).collect();
         assert_eq!(lines, [1, 1, 2, 2, 2, 3, 3, 4, 4, 5, 6, 6, 6, 6]);
         assert_eq!((line_at(b"", 0), line_at(b"abc", 9), line_at(b"a\r\nb", 3)), (1, 1, 2));
-    }
-
-    #[test]
-    fn texts_end_on_their_last_line_or_after_it() {
-        let ends = [&b""[..], b"a", b"a\n", b"a\r\nb", b"a\r\nb\r\n"].map(end_place);
-        assert_eq!(ends, [1, 1, 2, 2, 3].map(Place::line));
-        let mut findings = Findings::default();
-        for at in [0, 2, 3, 4].repeat(9) {
-            findings.push("W-test", shapeloom_core::Severity::Note, Place::Byte(at), "odd");
-        }
-        let found = findings_in_lines(b"a\nb\nc", &findings);
-        let only = found.iter().next().unwrap();
-        assert_eq!((only.count, only.places.len()), (36, Findings::PLACES_KEPT));
-        assert_eq!(only.places[..4], [1, 2, 2, 3].map(Place::line));
     }
 
     #[test]
