@@ -195,7 +195,7 @@ fn binary_facets_have_their_normal_and_rounding_is_said() {
     flat.positions_mut()[2] = DVec3::Y;
     let tiny = flat.transformed(&Affine::from_scale(DVec3::splat(1e-200)));
     let (file, _) = written(&Shape::new(Part::new(tiny)), Encoding::Ascii);
-    assert!(file.starts_with(b"solid\nfacet normal 0 0 1\n"));
+    assert!(file.starts_with(b"solid \nfacet normal 0 0 1\n"));
 }
 
 #[test]

@@ -217,8 +217,8 @@ fn write_text(
             let what = format!("part name \"{}\"", part.name.escape_debug());
             losses.push(what, format!("in the file it is \"{name}\""));
         }
-        let space = if name.is_empty() { "" } else { " " };
-        sink.text(format_args!("solid{space}{name}\n"))?;
+        // Some readers look for the space even where no name follows.
+        sink.text(format_args!("solid {name}\n"))?;
         if let Geometry::TriMesh(mesh) = &**placed {
             for face in 0..mesh.triangles().len() {
                 row.clear();
@@ -236,7 +236,7 @@ fn write_text(
                 sink.bytes(&row)?;
             }
         }
-        sink.text(format_args!("endsolid{space}{name}\n"))?;
+        sink.text(format_args!("endsolid {name}\n"))?;
     }
     sink.finish()
 }
