@@ -146,11 +146,6 @@ impl Welder {
         Ok(self.positions.len() as u32 - 1)
     }
 
-    /// How many there are.
-    pub(super) fn len(&self) -> usize {
-        self.positions.len()
-    }
-
     /// The positions in the order of their numbers.
     pub(super) fn into_positions(self) -> Vec<DVec3> {
         self.positions.into_vec()
@@ -259,6 +254,6 @@ mod tests {
         assert_eq!(numbers, wanted(&points));
         // Without the keyed map every look-up would pass by thousands of others.
         assert!(welder.keyed.is_some());
-        assert_eq!(welder.len(), 60_001);
+        assert_eq!(welder.positions.len(), 60_001);
     }
 }
