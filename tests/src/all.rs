@@ -4,20 +4,26 @@
 //! environment they are written anew instead.
 
 mod bench;
+mod between_formats;
 mod codes;
 mod collection;
 mod collection_obj;
 mod collection_off_stl;
 mod command_line;
 mod documents;
+#[path = "../fuzz/entry.rs"]
+mod entry;
 mod floors;
 mod harness;
 mod laws;
 mod malformed;
+mod malformed_gltf;
 mod malformed_obj;
 mod malformed_off;
 mod malformed_stl;
+mod mutations;
 mod oracles;
+mod peer_gltf;
 mod properties;
 mod regressions;
 mod round_trips;

@@ -2,23 +2,31 @@
 
 use shapeloom_bench::Task;
 
-use crate::support::root;
+use crate::support::{data, run};
 
 #[test]
-fn every_task_prints_one_line_of_json() {
+fn every_task_prints_lines_of_json() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    std::fs::copy(data("teapot.bpt"), folder.path().join("teapot.bpt")).expect("the teapot");
+    for extension in ["ply", "stl", "obj", "off", "glb"] {
+        let file = folder.path().join(format!("blob_1m.{extension}")).display().to_string();
+        assert_eq!(run(&["make", "sphere", &file]).code, 0, "{extension}");
+    }
+    let inputs = folder.path().display().to_string();
     for task in Task::ALL {
         let (mut out, mut err) = (Vec::new(), Vec::new());
-        let data = root().join("data").display().to_string();
         let words =
-            ["shapeloom-bench", task.name(), "--runs", "1", "--threads", "2", "--tolerance", "0.05", "--data", &data];
+            ["shapeloom-bench", task.name(), "--runs", "1", "--threads", "2", "--tolerance", "0.05", "--data", &inputs];
         let code = shapeloom_bench::run(words.map(Into::into), &mut out, &mut err);
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
-        let line = String::from_utf8(out).expect("UTF-8");
-        assert_eq!(line.lines().count(), 1);
-        let found: serde_json::Value = serde_json::from_str(&line).expect("JSON");
-        assert_eq!(found["task"], task.name());
-        for key in ["input", "wall_s", "cpu_s", "threads"] {
-            assert!(!found[key].is_null(), "{key} is missing: {line}");
+        let lines = String::from_utf8(out).expect("UTF-8");
+        assert_eq!(lines.lines().count(), if task == Task::Tessellate { 1 } else { 5 }, "{lines}");
+        for line in lines.lines() {
+            let found: serde_json::Value = serde_json::from_str(line).expect("JSON");
+            assert_eq!(found["task"], task.name());
+            for key in ["input", "wall_s", "cpu_s", "threads", "triangles"] {
+                assert!(!found[key].is_null(), "{key} is missing: {line}");
+            }
         }
     }
 }
@@ -33,4 +41,6 @@ fn wrong_words_and_missing_inputs_are_told() {
     assert_eq!(run(&["shapeloom-bench", "dance"]).0, 2);
     let (code, err) = run(&["shapeloom-bench", "tessellate", "--data", "nowhere"]);
     assert!(code == 2 && err.contains("nowhere"), "{err}");
+    let (code, err) = run(&["shapeloom-bench", "read", "--data", "nowhere"]);
+    assert!(code == 2 && err.contains("blob_1m"), "{err}");
 }

@@ -74,7 +74,7 @@ fn bombs_stay_small() {
     polygon += "f";
     (1..=20_000).for_each(|i| polygon += &format!(" {i}"));
     assert_eq!(obj(polygon.as_bytes()).expect("a large polygon").shape.parts.len(), 1);
-    let continued = format!("{SQUARE}f 1 2 3 {}", "\\\n".repeat(100_000));
+    let continued = format!("{SQUARE}f 1 2 3 {}", "\\\n".repeat(1_000_000));
     assert!(obj(continued.as_bytes()).expect("one face").findings.is_empty());
     let long = format!("{SQUARE}f{}\n", " 1 2 3 4".repeat(200_000));
     assert!(obj(long.as_bytes()).is_ok());
@@ -82,6 +82,8 @@ fn bombs_stay_small() {
     assert!(obj(format!("{SQUARE}{groups}").as_bytes()).is_ok());
     let objects: String = (0..50_000).map(|i| format!("o {i}\nv 0 0 {i}\nv 1 0 0\nv 1 1 0\nf -1 -2 -3\n")).collect();
     assert_eq!(obj(objects.as_bytes()).expect("many objects").shape.parts.len(), 50_000);
+    let lines: String = (0..50_000).map(|i| format!("o {i}\nv 0 0 {i}\nv 1 0 0\nl -1 -2\n")).collect();
+    assert_eq!(obj(lines.as_bytes()).expect("many lines").shape.parts.len(), 50_000);
     let lines = format!("{SQUARE}{}", "l 1 2\n".repeat(300_000));
     assert_eq!(obj(lines.as_bytes()).expect("one graph").shape.parts.len(), 1);
     let materials: String = (0..50_000).map(|i| format!("usemtl {i}\nf 1 2 3\n")).collect();

@@ -121,7 +121,7 @@ fn coordinates_of_five_million_metres_lose_nothing_in_glb() {
 #[test]
 fn made_shapes_go_through_every_writer() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    for extension in ["glb", "ply", "obj", "off", "stl"] {
+    for extension in ["glb", "gltf", "ply", "obj", "off", "stl"] {
         for shape in [
             "tetrahedron",
             "cube",
@@ -144,6 +144,22 @@ fn made_shapes_go_through_every_writer() {
     assert!((info["area"].as_f64().expect("an area") - 6.0).abs() < 1e-6);
     let info = run(&["info", &folder.path().join("sphere.glb").display().to_string(), "--json"]).json();
     assert!((info["volume"].as_f64().expect("a volume") / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 0.01);
+}
+
+#[test]
+fn graphs_survive_gltf_and_are_told_by_info() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let shape = Shape { up: Some(UpAxis::Y), ..Shape::new(Part::new(shapes::letter())) };
+    let again = read_again(&written(&shape, "gltf"), "gltf");
+    assert_eq!(again.parts[0].geometry, shape.parts[0].geometry);
+    let file = folder.path().join("letter.gltf");
+    std::fs::write(&file, written(&shape, "gltf")).expect("a temporary file");
+    let info = run(&["info", &file.display().to_string(), "--json"]).json();
+    assert_eq!((&info["kind"], &info["format"]), (&"geometric-graph".into(), &"gltf".into()));
+    assert_eq!((&info["vertices"], &info["edges"]), (&4.into(), &3.into()));
+    let length = 1.0 + 2f64.sqrt() + (1.0f64 + 1.0 + 0.25).sqrt();
+    assert!((info["parts"][0]["length"].as_f64().expect("a length") - length).abs() < 1e-12, "{info}");
+    assert!(info["tables"].as_array().is_some_and(Vec::is_empty) && info["comments"].is_array());
 }
 
 /// Real files with known counts, where the collection is there.

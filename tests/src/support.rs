@@ -20,8 +20,8 @@ pub fn text(path: &str) -> String {
 
 /// Files of a larger collection beside the workspace, which is not part of it: none where it is not there.
 pub fn shared_data(path: &str) -> Option<PathBuf> {
-    let path = root().parent()?.join("shared/data").join(path);
-    path.exists().then_some(path)
+    let beside = root().ancestors().skip(1).take(2).map(|folder| folder.join("shared/data").join(path));
+    beside.into_iter().find(|path| path.exists())
 }
 
 /// Every file below a folder whose name ends so, in order.

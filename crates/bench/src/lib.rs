@@ -3,7 +3,9 @@
 //! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
+mod files;
 mod measure;
+mod table;
 mod tessellate;
 
 use std::ffi::OsString;
@@ -31,6 +33,9 @@ struct Arguments {
     /// The tolerance of conversions, relative to the diagonal of the input's bounding box
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
+    /// A file with the JSON lines of peers: print a table of their figures beside these instead
+    #[arg(long, value_name = "FILE", conflicts_with = "json")]
+    against: Option<PathBuf>,
     /// Print JSON, which is what is printed anyhow
     #[arg(long)]
     json: bool,
@@ -41,16 +46,33 @@ struct Arguments {
 pub enum Task {
     /// The teapot's patches to triangles.
     Tessellate,
+    /// Mesh files of a million triangles (blob_1m.ply, .stl, .obj, .off, .glb) to meshes, from the disk.
+    Read,
+    /// The same mesh to every format, in memory.
+    Write,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 1] = [Self::Tessellate];
+    pub const ALL: [Self; 3] = [Self::Tessellate, Self::Read, Self::Write];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tessellate => "tessellate",
+            Self::Read => "read",
+            Self::Write => "write",
+        }
+    }
+}
+
+impl Task {
+    /// What peers call the same work on the same input.
+    pub(crate) fn peer_task(self, input: &str) -> String {
+        let extension = input.rsplit('.').next().unwrap_or_default();
+        match self {
+            Self::Read => format!("m.read_1m_{extension}"),
+            Self::Tessellate | Self::Write => String::new(),
         }
     }
 }
@@ -81,10 +103,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
             return if written.is_ok() { code } else { 2 };
         }
     };
-    let Arguments { task, data, runs, threads, tolerance, json: _ } = arguments;
+    let Arguments { task, data, runs, threads, tolerance, against, json: _ } = arguments;
     let setting = Setting { data, runs, tolerance };
     let work = || match task {
-        Task::Tessellate => tessellate::run(&setting),
+        Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
+        Task::Read => files::read_files(&setting),
+        Task::Write => files::write_files(&setting),
     };
     let outcome = match threads {
         None => work(),
@@ -93,20 +117,35 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
             Err(error) => Err(format!("{count} threads cannot be started: {error}")),
         },
     };
+    let outcome = outcome.and_then(|outcomes| match against {
+        None => Ok((outcomes, None)),
+        Some(path) => {
+            let said = |error: String| format!("{}: {error}", path.display());
+            let lines = std::fs::read_to_string(&path).map_err(|error| said(error.to_string()))?;
+            let table = table::markdown(task, &outcomes, &lines).map_err(said)?;
+            Ok((outcomes, Some(table)))
+        }
+    });
     match outcome {
-        Ok(Outcome { input, times, figures }) => {
-            let mut line = json!({
-                "task": task.name(),
-                "input": input,
-                "runs": runs,
-                "threads": threads.map_or_else(rayon::current_num_threads, usize::from),
-                "wall_s": times.wall,
-                "cpu_s": times.cpu,
-            });
-            if let Some(object) = line.as_object_mut() {
-                object.extend(figures);
+        Ok((_, Some(table))) => {
+            let _ = write!(out, "{table}");
+            0
+        }
+        Ok((outcomes, None)) => {
+            for Outcome { input, times, figures } in outcomes {
+                let mut line = json!({
+                    "task": task.name(),
+                    "input": input,
+                    "runs": runs,
+                    "threads": threads.map_or_else(rayon::current_num_threads, usize::from),
+                    "wall_s": times.wall,
+                    "cpu_s": times.cpu,
+                });
+                if let Some(object) = line.as_object_mut() {
+                    object.extend(figures);
+                }
+                let _ = writeln!(out, "{line}");
             }
-            let _ = writeln!(out, "{line}");
             0
         }
         Err(message) => {

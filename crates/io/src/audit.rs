@@ -5,11 +5,15 @@ use std::sync::Arc;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::{CHUNK, map_chunks};
 use shapeloom_core::{Exec, Findings, Place, Severity, Stop};
-use shapeloom_mesh::{GeometricGraph, PointCloud, Polyline};
+use shapeloom_mesh::{GeometricGraph, PointCloud};
 use shapeloom_shape::{Geometry, Shape};
 
 use crate::cut::cut;
 use crate::{Fault, ReadError};
+
+/// What to do about positions that are not finite.
+pub(crate) const DROP_ADVICE: &str =
+    "repair the file, or leave such vertices out with the option drop_non_finite (--drop-non-finite)";
 
 /// Remarks on the faces of a mesh that name a vertex twice or whose corners lie on one line; `place` says where in the
 /// input a face is. Cost: one pass over the faces, parallel.
@@ -140,31 +144,19 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
             for column in cloud.attributes() {
                 rest.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
             }
+            for list in cloud.attributes().lists() {
+                rest.insert_list(list.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
+            }
             (Some(rest.into()), 0)
         }
+        // A polyline that loses a point falls apart: what is left of it is a graph.
         Geometry::Polyline(line) => {
-            let mut rest = Polyline::new(gathered(), line.is_closed());
-            for column in line.attributes() {
-                rest.insert_attribute(column.gathered(&kept)).map_err(|error| wrong(error.to_string()))?;
-            }
-            (Some(rest.into()), lost)
+            let (graph, edges) = finite_graph(&GeometricGraph::from(line.clone()), &kept, &new_of_old)?;
+            (Some(graph.into()), edges)
         }
         Geometry::GeometricGraph(graph) => {
-            let edges: Vec<u32> = (0..graph.edges().len() as u32)
-                .filter(|&edge| graph.edges()[edge as usize].iter().all(finite))
-                .collect();
-            let ends = |&edge: &u32| graph.edges()[edge as usize].map(|end| new_of_old[end as usize]);
-            let rest = GeometricGraph::try_new(gathered(), edges.iter().map(ends).collect());
-            let mut rest = rest.map_err(|error| wrong(error.to_string()))?;
-            for column in graph.vertex_attributes() {
-                let column = column.gathered(&kept);
-                rest.insert_vertex_attribute(column).map_err(|error| wrong(error.to_string()))?;
-            }
-            for column in graph.edge_attributes() {
-                let column = column.gathered(&edges);
-                rest.insert_edge_attribute(column).map_err(|error| wrong(error.to_string()))?;
-            }
-            (Some(rest.into()), graph.edges().len() - edges.len())
+            let (graph, edges) = finite_graph(graph, &kept, &new_of_old)?;
+            (Some(graph.into()), edges)
         }
         Geometry::TriMesh(mesh) => {
             let whole = |face: &u32| mesh.triangles()[*face as usize].iter().all(finite);
@@ -183,10 +175,39 @@ fn finite_part(geometry: &Geometry) -> Result<Option<Kept>, ReadError> {
     Ok(rest.map(|rest| (rest, lost, lost_faces)))
 }
 
+/// The vertices that are kept with the edges between them, and how many edges are not.
+fn finite_graph(
+    graph: &GeometricGraph,
+    kept: &[u32],
+    new_of_old: &[u32],
+) -> Result<(GeometricGraph, usize), ReadError> {
+    let wrong = |error: String| Fault::new("E-read-elements", Place::Whole, error, "a mesh");
+    let whole = |edge: &u32| graph.edges()[*edge as usize].iter().all(|&end| new_of_old[end as usize] != u32::MAX);
+    let edges: Vec<u32> = (0..graph.edges().len() as u32).filter(whole).collect();
+    let ends = |&edge: &u32| graph.edges()[edge as usize].map(|end| new_of_old[end as usize]);
+    let positions = kept.iter().map(|&vertex| graph.positions()[vertex as usize]).collect();
+    let rest = GeometricGraph::try_new(positions, edges.iter().map(ends).collect());
+    let mut rest = rest.map_err(|error| wrong(error.to_string()))?;
+    for column in graph.vertex_attributes() {
+        rest.insert_vertex_attribute(column.gathered(kept)).map_err(|error| wrong(error.to_string()))?;
+    }
+    for list in graph.vertex_attributes().lists() {
+        rest.insert_vertex_list(list.gathered(kept)).map_err(|error| wrong(error.to_string()))?;
+    }
+    for column in graph.edge_attributes() {
+        rest.insert_edge_attribute(column.gathered(&edges)).map_err(|error| wrong(error.to_string()))?;
+    }
+    for list in graph.edge_attributes().lists() {
+        rest.insert_edge_list(list.gathered(&edges)).map_err(|error| wrong(error.to_string()))?;
+    }
+    let lost = graph.edges().len() - edges.len();
+    Ok((rest, lost))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shapeloom_mesh::{Column, Domain, PolyMesh, TriMesh};
+    use shapeloom_mesh::{Column, Domain, PolyMesh, Polyline, TriMesh};
     use shapeloom_shape::Part;
 
     #[test]
@@ -236,5 +257,11 @@ mod tests {
         assert_eq!(labels(Domain::Face, "f"), shapeloom_mesh::Values::U32(vec![8]));
         assert_eq!(labels(Domain::Wedge, "w"), shapeloom_mesh::Values::U32(vec![3, 4, 5, 6]));
         assert_eq!(findings.iter().next().unwrap().code, "W-read-dropped");
+        // A line without its second point is a point and a segment.
+        let line = Polyline::new(vec![DVec3::ZERO, DVec3::NAN, DVec3::X, DVec3::Y], false);
+        let mut shape = Shape::new(Part::new(line));
+        drop_non_finite(&mut shape, &mut findings).unwrap();
+        let Geometry::GeometricGraph(graph) = &*shape.parts[0].geometry else { panic!("a graph") };
+        assert_eq!((graph.positions().len(), graph.edges()), (3, &[[1, 2]][..]));
     }
 }

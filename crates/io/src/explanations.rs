@@ -51,18 +51,33 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "E-gltf-extension",
         "The file requires an extension that is not read, so that it cannot be understood without it.",
     ),
-    ("E-gltf-feature", "The file uses a part of glTF that is not read yet: sparse accessors or compressed data."),
+    ("E-gltf-feature", "The file uses a part of glTF that is not read: compressed data."),
+    (
+        "E-gltf-finite",
+        "A position is infinite or not a number. Repair the file, or read it with the option drop_non_finite, which \
+     leaves out such vertices with the faces that use them.",
+    ),
     ("E-gltf-index", "An index of a primitive names a vertex that does not exist."),
     ("E-gltf-json", "The document is not valid JSON. The message names the first place at fault."),
-    ("E-gltf-limit", "The file has more elements than the reader's limits allow."),
+    (
+        "E-gltf-limit",
+        "The file has more elements than the reader's limits allow, or claims very many that are nowhere in it and \
+     would all be zeros.",
+    ),
     ("E-gltf-mesh", "The vertices, indices and attributes of a primitive make no mesh."),
     ("E-gltf-missing", "A member that glTF requires is absent."),
     ("E-gltf-mode", "The mode of a primitive is a number from 0, points, to 6, a fan of triangles."),
     (
         "E-gltf-parents",
-        "A node has two parents, or the scene reaches it twice. The nodes of a scene must be a tree; instances share a mesh, not a node.",
+        "The scene reaches a node twice in the same place. The nodes of a scene must be a tree; instances share a mesh, \
+     not a node.",
     ),
     ("E-gltf-reference", "A number names an element of a list that is not there."),
+    (
+        "E-gltf-sparse",
+        "The indices of a sparse accessor must strictly rise and stay below its count. The program that wrote the file \
+     did not sort them.",
+    ),
     (
         "E-gltf-type",
         "A value has another type than glTF gives it: a string for a number, VEC2 for positions, floating numbers for indices.",
@@ -183,10 +198,17 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-glb-single", "glTF stores attributes in single precision, about seven digits."),
     ("W-glb-trailing", "The file is longer than its header says; what follows was not read."),
     ("W-glb-up", "glTF has y up. The up axis of the shape is not known, so it was written without turning it."),
-    ("W-gltf-corners", "The number of indices of a primitive is no multiple of three; the last ones make no triangle."),
-    ("W-gltf-finite", "A position is infinite or not a number. It was kept: repair the mesh before using it."),
+    (
+        "W-gltf-corners",
+        "The number of indices of a primitive does not go up in triangles, or segments; the last ones make none.",
+    ),
     ("W-gltf-mark", "The document begins with a byte order mark, which glTF forbids."),
     ("W-gltf-matrix", "The last row of a node's matrix must be 0 0 0 1, and was taken as that."),
+    (
+        "W-gltf-parents",
+        "A node has several parents, which glTF forbids: nodes must be a tree. Each way to it puts it somewhere else, so \
+     that it was read as instances.",
+    ),
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),

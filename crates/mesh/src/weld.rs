@@ -193,7 +193,7 @@ fn promote_disagreeing(mesh: &mut TriMesh, groups: &Groups, report: &mut Report)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{TEXCOORD, TriangulatePolygons};
+    use crate::{TEXCOORD, TriangulatePolygons, Values};
 
     /// The cube with every corner of every triangle a vertex of its own.
     fn soup() -> TriMesh {
@@ -224,6 +224,19 @@ mod tests {
         assert!(welded.attribute(Domain::Vertex, TEXCOORD).is_none());
         let moved = welded.attribute(Domain::Wedge, TEXCOORD).unwrap();
         assert!((0..36).all(|wedge| moved.number(wedge, 0) == wedge as f64));
+    }
+
+    #[test]
+    fn disagreeing_lists_are_named_as_lost() {
+        let mut mesh = soup();
+        let starts: Vec<u32> = (0..=36).collect();
+        let list = |name: &str, values: Vec<u8>| ListColumn::try_new(name, starts.clone(), Values::U8(values)).unwrap();
+        mesh.insert_list(Domain::Vertex, list("same", vec![5; 36])).unwrap();
+        mesh.insert_list(Domain::Vertex, list("other", (0..36).collect())).unwrap();
+        let converted = Weld::new().convert(&mesh).unwrap();
+        let lists = converted.value.attributes().vertex.lists();
+        assert_eq!(lists.iter().map(|list| (list.name(), list.len())).collect::<Vec<_>>(), [("same", 8)]);
+        assert_eq!(converted.report.losses, [Loss::new("vertex list \"other\"", "merged vertices disagree")]);
     }
 
     #[test]

@@ -257,3 +257,34 @@ fn words(object: &Map<String, Value>) -> String {
     }
     lines.join("\n")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shapeloom_core::glam::DVec3;
+    use shapeloom_mesh::{Column, GeometricGraph, ListColumn, Values};
+    use shapeloom_shape::Table;
+
+    #[test]
+    fn graphs_lists_tables_and_comments_are_told() {
+        let mut graph = GeometricGraph::try_new(vec![DVec3::ZERO, DVec3::X], vec![[0, 1]]).unwrap();
+        graph.insert_edge_attribute(Column::labels("street", vec![7])).unwrap();
+        let houses = ListColumn::try_new("houses", vec![0, 2, 3], Values::U8(vec![1, 2, 3])).unwrap();
+        graph.insert_vertex_list(houses).unwrap();
+        let mut columns = Attributes::new(4);
+        columns.insert(Column::labels("size", vec![0; 4])).unwrap();
+        let tables = vec![Table { name: "rows".into(), columns }];
+        let shape = Shape { tables, comments: vec!["made by hand".into()], ..Shape::new(Part::new(graph)) };
+        let told = Value::Object(describe(&shape, &Exec::default()).unwrap());
+        assert_eq!((&told["kind"], &told["edges"]), (&json!("geometric-graph"), &json!(1)));
+        assert_eq!(
+            told["attributes"],
+            json!([
+                {"domain": "edge", "name": "street", "width": 1, "type": "u32"},
+                {"domain": "vertex", "name": "houses", "type": "list of u8"}
+            ])
+        );
+        assert_eq!(told["tables"], json!([{"name": "rows", "rows": 4, "columns": ["size"]}]));
+        assert_eq!(told["comments"], json!(["made by hand"]));
+    }
+}

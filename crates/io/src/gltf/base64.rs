@@ -1,5 +1,24 @@
 //! Base64 (RFC 4648).
 
+use std::io::{self, Write};
+
+/// Writes standard base64 with padding.
+pub(super) fn encode(bytes: &[u8], out: &mut dyn Write) -> io::Result<()> {
+    const SYMBOLS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = Vec::with_capacity(4 << 10);
+    for block in bytes.chunks(3 << 10) {
+        text.clear();
+        for group in block.chunks(3) {
+            let byte = |at: usize| u32::from(group.get(at).copied().unwrap_or(0));
+            let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+            let symbol = |at: usize| SYMBOLS[(bits >> (18 - 6 * at)) as usize & 63];
+            text.extend((0..4).map(|at| if at <= group.len() { symbol(at) } else { b'=' }));
+        }
+        out.write_all(&text)?;
+    }
+    Ok(())
+}
+
 /// Decodes standard base64, padded or not; none for any other character, white space included, and for cut groups.
 pub(super) fn decode(text: &[u8]) -> Option<Vec<u8>> {
     let unpadded = text.strip_suffix(b"==").or_else(|| text.strip_suffix(b"=")).unwrap_or(text);
@@ -47,7 +66,14 @@ mod tests {
             ("Zg", "f"),
         ] {
             assert_eq!(decode(text.as_bytes()).as_deref(), Some(bytes.as_bytes()), "{text}");
+            let mut encoded = Vec::new();
+            encode(bytes.as_bytes(), &mut encoded).unwrap();
+            assert!(encoded.len().is_multiple_of(4) && encoded.starts_with(text.as_bytes()), "{text}");
         }
+        let long: Vec<u8> = (0..10_000u32).map(|i| (i * i % 251) as u8).collect();
+        let mut encoded = Vec::new();
+        encode(&long, &mut encoded).unwrap();
+        assert_eq!(decode(&encoded), Some(long));
         assert_eq!(decode(b"+/+/"), Some(vec![0xfb, 0xff, 0xbf]));
         for text in ["Z", "Zm9vZ", "Zm 9v", "Z=g=", "Zm9v\n", "===="] {
             assert_eq!(decode(text.as_bytes()), None, "{text}");

@@ -70,23 +70,71 @@ fn from_uri(uri: &At<'_>, length: u64, memory: &mut Memory<'_>, context: &ReadCo
     Ok(opened.map_err(|error| uri.fault("E-sibling-missing", format!("{}: {error}", found()), "a readable file"))?)
 }
 
-/// The bytes of a view, where they start in the file if they do, and the distance of elements.
-#[derive(Clone, Copy)]
-pub(super) struct View<'a> {
-    pub bytes: &'a [u8],
-    start: Option<usize>,
-    pub stride: Option<u64>,
+/// Elements of equal size at equal distances, all of them within a buffer.
+#[derive(Clone, Debug)]
+pub(super) struct Strip<'a> {
+    /// From the first element on.
+    bytes: &'a [u8],
+    /// Where the first element starts in its buffer, and where the buffer starts in the file if it is a part of it.
+    in_buffer: usize,
+    in_file: Option<usize>,
+    stride: usize,
 }
 
-impl View<'_> {
-    /// The place in the file of a byte of the view.
-    pub fn place(&self, offset: usize) -> Place {
-        self.start.map_or(Place::Whole, |start| Place::Byte((start + offset) as u64))
+impl<'a> Strip<'a> {
+    /// The `count` elements of `size` bytes at the byteOffset and in the bufferView of `holder`.
+    pub fn open(
+        document: &At<'_>,
+        holder: &At<'_>,
+        buffers: &'a [Buffer<'_>],
+        count: u64,
+        size: u64,
+    ) -> Result<Self, Box<Fault>> {
+        let view: View<'a> = view(document, &holder.require("bufferView")?, buffers)?;
+        let stride = view.stride.unwrap_or(size);
+        if stride < size {
+            let found = format!("a byteStride of {stride} in its view");
+            return Err(holder.fault("E-gltf-bounds", found, format!("at least {size}, the size of an element")));
+        }
+        let offset = holder.count_or("byteOffset", 0)?;
+        let (wide, len) = (u128::from, view.bytes.len());
+        let end = wide(offset) + wide(count.saturating_sub(1)) * wide(stride) + wide(size);
+        if end > len as u128 {
+            let found = format!("{count} elements, which end at byte {end} of the view");
+            return Err(holder.fault("E-gltf-bounds", found, format!("elements within the {len} bytes of the view")));
+        }
+        let (in_buffer, offset) = (view.in_buffer + offset as usize, offset as usize);
+        Ok(Self { bytes: &view.bytes[offset..], in_buffer, in_file: view.in_file, stride: stride as usize })
+    }
+
+    /// The byte of its buffer at which an element starts.
+    pub fn byte(&self, element: usize) -> usize {
+        self.in_buffer + element * self.stride
+    }
+
+    /// The place in the file where an element starts, if the buffer is a part of the file.
+    pub fn place(&self, element: usize) -> Place {
+        self.in_file.map_or(Place::Whole, |start| Place::Byte((start + self.byte(element)) as u64))
+    }
+
+    /// A component of `N` bytes of an element.
+    pub fn bytes<const N: usize>(&self, element: usize, component: usize) -> [u8; N] {
+        let at = element * self.stride + component * N;
+        // Opening checked the last element.
+        self.bytes[at..at + N].try_into().unwrap_or([0; N])
     }
 }
 
+/// The bytes of a view, where they start in their buffer, where that starts in the file, and the distance of elements.
+struct View<'a> {
+    bytes: &'a [u8],
+    in_buffer: usize,
+    in_file: Option<usize>,
+    stride: Option<u64>,
+}
+
 /// The view that `index` names.
-pub(super) fn view<'a>(document: &At<'_>, index: &At<'_>, buffers: &'a [Buffer<'_>]) -> Result<View<'a>, Box<Fault>> {
+fn view<'a>(document: &At<'_>, index: &At<'_>, buffers: &'a [Buffer<'_>]) -> Result<View<'a>, Box<Fault>> {
     let view = document.element("bufferViews", index)?;
     if view.value.pointer("/extensions/EXT_meshopt_compression").is_some() {
         return Err(view.fault("E-gltf-feature", "meshopt compression", "plain data").category(Category::Unsupported));
@@ -102,9 +150,6 @@ pub(super) fn view<'a>(document: &At<'_>, index: &At<'_>, buffers: &'a [Buffer<'
         return Err(view.fault("E-gltf-bounds", found, expected));
     };
     let stride = view.get("byteStride")?.map(|stride| stride.count_value()).transpose()?;
-    Ok(View {
-        bytes: &buffer.bytes[offset as usize..end as usize],
-        start: buffer.start.map(|start| start + offset as usize),
-        stride,
-    })
+    let bytes = &buffer.bytes[offset as usize..end as usize];
+    Ok(View { bytes, in_buffer: offset as usize, in_file: buffer.start, stride })
 }

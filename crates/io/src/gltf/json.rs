@@ -51,7 +51,7 @@ pub(super) fn parse(
     }))
 }
 
-/// A value with its path from the root of the document: `accessors[3].count`.
+/// A value with its path from the root of the document, a JSON pointer (RFC 6901): `/accessors/3/count`.
 #[derive(Clone, Debug)]
 pub(super) struct At<'j> {
     pub value: &'j Value,
@@ -80,7 +80,10 @@ impl<'j> At<'j> {
     }
 
     pub fn child(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+        if key.contains(['~', '/']) {
+            return format!("{}/{}", self.path, key.replace('~', "~0").replace('/', "~1"));
+        }
+        format!("{}/{key}", self.path)
     }
 
     /// A member, if there is one.
@@ -110,7 +113,7 @@ impl<'j> At<'j> {
     pub fn elements(&self) -> Result<impl ExactSizeIterator<Item = At<'j>> + use<'j>, Box<Fault>> {
         let array = self.value.as_array().ok_or_else(|| self.wrong("an array"))?;
         let path = self.path.clone();
-        Ok(array.iter().enumerate().map(move |(i, value)| At { value, path: format!("{path}[{i}]") }))
+        Ok(array.iter().enumerate().map(move |(i, value)| At { value, path: format!("{path}/{i}") }))
     }
 
     /// How many elements a member has that is an array; none if it is absent.
@@ -121,7 +124,7 @@ impl<'j> At<'j> {
     /// The element of the document's list `list` that `index` names.
     pub fn element(&self, list: &str, index: &At<'_>) -> Result<At<'j>, Box<Fault>> {
         let number = index.count_value()?;
-        let path = format!("{list}[{number}]");
+        let path = format!("/{list}/{number}");
         let value = self.value.get(list).and_then(|list| list.get(usize::try_from(number).ok()?));
         value.map(|value| At { value, path }).ok_or_else(|| {
             let count = self.value.get(list).and_then(Value::as_array).map_or(0, Vec::len);
@@ -177,13 +180,14 @@ mod tests {
         let root = At::root(&value);
         let accessor = root.require("accessors").unwrap().elements().unwrap().next().unwrap();
         let fault = accessor.require("count").unwrap().count_value().unwrap_err();
-        assert_eq!(fault.within.as_deref(), Some("accessors[0].count"));
+        assert_eq!(fault.within.as_deref(), Some("/accessors/0/count"));
         assert_eq!(fault.found, "-1");
-        assert_eq!(accessor.require("type").unwrap_err().within.as_deref(), Some("accessors[0].type"));
-        assert_eq!(root.require("n").unwrap().numbers::<2>().unwrap_err().within.as_deref(), Some("n[1]"));
-        let index = At { value: &serde_json::json!(7), path: "nodes[0].mesh".into() };
+        assert_eq!(accessor.require("type").unwrap_err().within.as_deref(), Some("/accessors/0/type"));
+        assert_eq!(root.require("n").unwrap().numbers::<2>().unwrap_err().within.as_deref(), Some("/n/1"));
+        assert_eq!(root.child("a/b~c"), "/a~1b~0c");
+        let index = At { value: &serde_json::json!(7), path: "/nodes/0/mesh".into() };
         let fault = At::root(&value).element("accessors", &index).unwrap_err();
-        assert_eq!((fault.code, fault.within.as_deref()), ("E-gltf-reference", Some("nodes[0].mesh")));
+        assert_eq!((fault.code, fault.within.as_deref()), ("E-gltf-reference", Some("/nodes/0/mesh")));
     }
 
     #[test]

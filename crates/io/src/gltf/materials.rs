@@ -1,34 +1,45 @@
-//! Materials.
+//! Materials of a file.
 
-use serde_json::Value;
+use std::collections::BTreeSet;
+
 use shapeloom_shape::Material;
 
-use super::bin::object;
 use super::json::At;
-use crate::Fault;
+use crate::memory::Memory;
+use crate::placed::Losses;
+use crate::{Fault, ReadError, SiblingName};
 
-/// A material as glTF has it: numbers that are no colour or fraction are put into range.
-pub(super) fn to_json(material: &Material) -> Value {
-    // Clamping leaves NaN; the maximum makes it 0.
-    let fraction = |value: f32| f64::from(value.clamp(0.0, 1.0).max(0.0));
-    let alpha = material.base_color[3];
-    object([
-        ("name", if material.name.is_empty() { Value::Null } else { material.name.as_str().into() }),
-        (
-            "pbrMetallicRoughness",
-            object([
-                ("baseColorFactor", material.base_color.map(fraction).to_vec().into()),
-                ("metallicFactor", fraction(material.metallic).into()),
-                ("roughnessFactor", fraction(material.roughness).into()),
-            ]),
-        ),
-        ("doubleSided", if material.double_sided { true.into() } else { Value::Null }),
-        ("alphaMode", if alpha < 1.0 { "BLEND".into() } else { Value::Null }),
-    ])
+/// The materials of a document, with the defaults of glTF: white, metal, rough.
+///
+/// Of textures only the name of the file of the base colour is kept; what else materials say is named as lost.
+pub(super) fn read(
+    document: &At<'_>,
+    memory: &mut Memory<'_>,
+    losses: &mut Losses,
+) -> Result<Vec<Material>, ReadError> {
+    let mut materials = Vec::new();
+    let mut kept = BTreeSet::new();
+    if let Some(list) = document.get("materials")? {
+        for material in list.elements()? {
+            memory.take(1, 2 * size_of::<Material>())?;
+            let read = from_json(&material, document, &mut kept)?;
+            if let Some(name) = &read.texture {
+                memory.take(name.len(), 1)?;
+            }
+            materials.push(read);
+            unread(&material, losses)?;
+        }
+    }
+    let lost = document.count("textures")?.saturating_sub(kept.len());
+    if lost > 0 {
+        let why =
+            "of textures only the file name of the base colour is kept, and pictures inside the file are not read";
+        losses.push(format!("{lost} textures"), why);
+    }
+    Ok(materials)
 }
 
-/// A material of a file, with the defaults of glTF: white, metal, rough.
-pub(super) fn from_json(material: &At<'_>, document: &At<'_>) -> Result<Material, Box<Fault>> {
+fn from_json(material: &At<'_>, document: &At<'_>, kept: &mut BTreeSet<u64>) -> Result<Material, Box<Fault>> {
     let mut read = Material { metallic: 1.0, ..Material::default() };
     if let Some(name) = material.get("name")? {
         read.name = name.text()?.to_owned();
@@ -49,17 +60,46 @@ pub(super) fn from_json(material: &At<'_>, document: &At<'_>) -> Result<Material
         read.roughness = roughness.number()? as f32;
     }
     if let Some(texture) = rough.get("baseColorTexture")? {
-        let texture = document.element("textures", &texture.require("index")?)?;
-        if let Some(source) = texture.get("source")? {
-            let image = document.element("images", &source)?;
-            let name = match image.get("name")? {
-                Some(name) => Some(name),
-                None => image.get("uri")?,
-            };
-            // A picture inside the file has a long address that is no name.
-            let name = name.map(|name| name.text()).transpose()?.filter(|name| !name.starts_with("data:"));
-            read.texture = name.map(str::to_owned);
+        let index = texture.require("index")?;
+        read.texture = file_of(&document.element("textures", &index)?, document)?;
+        if read.texture.is_some() {
+            kept.insert(index.count_value()?);
         }
     }
     Ok(read)
+}
+
+/// The name of the file that a texture is in; none for one that is inside the document.
+fn file_of(texture: &At<'_>, document: &At<'_>) -> Result<Option<String>, Box<Fault>> {
+    let Some(source) = texture.get("source")? else { return Ok(None) };
+    let Some(address) = document.element("images", &source)?.get("uri")? else { return Ok(None) };
+    let address = address.text()?;
+    if address.starts_with("data:") {
+        return Ok(None);
+    }
+    // It is not opened, so that one outside of the folder does no harm as a mere name.
+    Ok(Some(SiblingName::from_uri(address).map_or(address.to_owned(), |name| name.as_str().to_owned())))
+}
+
+/// Names what a material says beyond what shapes keep.
+fn unread(material: &At<'_>, losses: &mut Losses) -> Result<(), Box<Fault>> {
+    for (key, what) in [
+        ("normalTexture", "normal textures"),
+        ("occlusionTexture", "occlusion textures"),
+        ("emissiveTexture", "emissive textures"),
+        ("extensions", "extensions of materials"),
+    ] {
+        if material.get(key)?.is_some() {
+            losses.push(what, "materials of shapes have no place for them");
+        }
+    }
+    if let Some(factor) = material.get("emissiveFactor")?
+        && factor.numbers::<3>()? != [0.0; 3]
+    {
+        losses.push("emissive colours", "materials of shapes have no place for them");
+    }
+    if material.get("alphaMode")?.is_some_and(|mode| mode.value == "MASK") {
+        losses.push("alpha masks", "materials of shapes have no place for them");
+    }
+    Ok(())
 }

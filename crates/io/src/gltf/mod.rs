@@ -1,5 +1,5 @@
-//! glTF 2.0, after the specification of the Khronos Group: GLB read and written, JSON with buffers in data URIs or
-//! sibling files read.
+//! glTF 2.0, after the specification of the Khronos Group: GLB, and JSON with buffers in data URIs or sibling files.
+//! JSON is written with its one buffer in a data URI.
 //!
 //! Conventions, kept by reader and writer alike:
 //!
@@ -13,22 +13,31 @@
 //! - **Colours** in floating columns are linear and stay; whole numbers are sRGB in shapes and linear in glTF.
 //! - **Other columns** of numbers are application-specific attributes: column `heat` is `_heat`. Whole numbers of up to
 //!   16 bits keep their type, larger ones become the narrowest type that holds the values, up to 2²⁴.
+//! - **Materials of faces.** A mesh whose faces name materials is written as a mesh of one primitive a material, each with
+//!   its own vertices. Every primitive is read as a part of its own.
+//! - **Textures** are names of files in the folder of the document or below.
 //! - **Wedges.** Vertices are split exactly where the values of the corners around them differ: see [`split`].
 
 mod accessor;
 mod base64;
 mod bin;
 mod buffers;
+mod by_material;
 mod columns;
 mod container;
+mod document;
 mod encode;
 mod json;
+mod lines;
+mod looks;
 mod materials;
 mod origin;
 mod primitive;
 mod read;
 mod scene;
+mod sparse;
 mod split;
+mod stored;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -65,7 +74,7 @@ pub(crate) const GLB: Format = Format {
     kinds: KINDS,
     keeps: KEEPS,
     read_options: &[],
-    write_options: &[],
+    write_options: &["instances"],
     sniff: |head| if head.starts_with(b"glTF") { Sniff::Certain } else { Sniff::No },
     reads: Some(read::read_glb),
     writes: Some(write::write_glb),
@@ -83,10 +92,10 @@ pub(crate) const GLTF: Format = Format {
     kinds: KINDS,
     keeps: KEEPS,
     read_options: &[],
-    write_options: &[],
+    write_options: &["instances"],
     sniff: sniff_json,
     reads: Some(read::read_gltf),
-    writes: None,
+    writes: Some(write::write_gltf),
 };
 
 /// An object that speaks of an asset.

@@ -4,11 +4,10 @@ use shapeloom_core::Aabb;
 use shapeloom_core::VectorSpace;
 use shapeloom_core::glam::DVec3;
 
-/// Points in single precision: point `i` is `origin + positions[i]` within `rounding`.
+/// Where to put points in single precision, and what it costs.
 #[derive(Debug, PartialEq)]
 pub(super) struct SinglePrecision {
     pub origin: DVec3,
-    pub positions: Vec<f32>,
     /// The largest distance between a point and what a reader that computes in double precision gets.
     pub rounding: f64,
 }
@@ -17,21 +16,21 @@ pub(super) struct SinglePrecision {
 /// own. Up to here at most two bits of 24 are gained, which is not worth a node that is not plain.
 const FAR: f64 = 4.0;
 
-/// Rounds points to single precision. The origin is 0 where that is exact or where the points lie near it; else it is
+/// The origin about which points are rounded to single precision. The origin is 0 where that is exact or where the points lie near it; else it is
 /// the centre of their box, rounded to a single-precision multiple of a power of two so that every reader gets it
 /// exactly, if this makes the rounding smaller.
 ///
 /// # Errors
 /// The index of a point whose coordinates single precision cannot hold.
 pub(super) fn single_precision(points: &[DVec3]) -> Result<SinglePrecision, usize> {
-    let plain = about(points, DVec3::ZERO)?;
+    let plain = rounded(points, DVec3::ZERO)?;
     let bounds = Aabb::from_points(points.iter().copied());
     let (extent, reach) = (bounds.size().max_element(), bounds.min.abs().max(bounds.max.abs()).max_element());
     if plain.rounding == 0.0 || reach <= FAR * extent {
         return Ok(plain);
     }
     let center = bounds.center().to_array().map(|coordinate| few_bits(coordinate, extent));
-    match about(points, DVec3::from_array(center)) {
+    match rounded(points, DVec3::from_array(center)) {
         Ok(local) if local.rounding < plain.rounding => Ok(local),
         _ => Ok(plain),
     }
@@ -46,21 +45,24 @@ fn few_bits(coordinate: f64, extent: f64) -> f64 {
     f64::from(coarse as f32)
 }
 
-fn about(points: &[DVec3], origin: DVec3) -> Result<SinglePrecision, usize> {
-    let mut positions = Vec::with_capacity(points.len() * 3);
+/// Points in single precision about an origin.
+pub(super) fn about(points: &[DVec3], origin: DVec3) -> Vec<f32> {
+    points.iter().flat_map(|&point| (point - origin).as_vec3().to_array()).collect()
+}
+
+fn rounded(points: &[DVec3], origin: DVec3) -> Result<SinglePrecision, usize> {
     let mut rounding = 0.0f64;
     for (index, &point) in points.iter().enumerate() {
         let local = (point - origin).as_vec3();
         if !local.is_finite() {
             return Err(index);
         }
-        positions.extend_from_slice(&local.to_array());
         // Not by squares, which vanish for tiny shapes.
         let error = VectorSpace::length(local.as_dvec3() + origin - point);
         // The length itself is rounded.
         rounding = rounding.max(if error > 0.0 { error * (1.0 + 4.0 * f64::EPSILON) } else { 0.0 });
     }
-    Ok(SinglePrecision { origin, positions, rounding })
+    Ok(SinglePrecision { origin, rounding })
 }
 
 #[cfg(test)]
@@ -80,10 +82,7 @@ mod tests {
         assert!(near.rounding > 0.0 && near.rounding < 1e-6);
         // Whole numbers are exact however far away.
         let far = [DVec3::new(5e6, 1.0, 0.0), DVec3::new(5e6, 2.0, 0.0)];
-        assert_eq!(
-            single_precision(&far).unwrap(),
-            SinglePrecision { origin: DVec3::ZERO, positions: vec![5e6, 1.0, 0.0, 5e6, 2.0, 0.0], rounding: 0.0 }
-        );
+        assert_eq!(single_precision(&far).unwrap(), SinglePrecision { origin: DVec3::ZERO, rounding: 0.0 });
     }
 
     #[test]
@@ -93,7 +92,7 @@ mod tests {
         assert!(far.origin.distance(points[0]) < 10.0);
         assert_eq!(far.origin.as_vec3().as_dvec3(), far.origin);
         assert!(far.rounding < 1e-6, "{}", far.rounding);
-        for (point, local) in points.iter().zip(far.positions.chunks(3)) {
+        for (point, local) in points.iter().zip(about(&points, far.origin).chunks(3)) {
             let back = far.origin + DVec3::new(f64::from(local[0]), f64::from(local[1]), f64::from(local[2]));
             assert!(back.distance(*point) <= far.rounding);
         }

@@ -3,18 +3,19 @@
 use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Findings, Place, Severity};
-use shapeloom_mesh::{Column, Domain, PointCloud, Polyline, TriMesh};
+use shapeloom_core::{Category, Findings, Place, Severity};
+use shapeloom_mesh::{Column, Domain, GeometricGraph, PointCloud, Polyline, TriMesh};
 use shapeloom_shape::Geometry;
 
-use super::accessor::Accessor;
-use super::bin::{UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
+use super::accessor::{Accessor, Declared};
+use super::bin::{FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
 use super::buffers::Buffer;
 use super::columns;
 use super::json::At;
+use super::lines::chain;
 use crate::memory::Memory;
 use crate::placed::Losses;
-use crate::{ReadContext, ReadError};
+use crate::{Fault, ReadContext, ReadError};
 
 /// What all primitives of a document share.
 pub(super) struct Primitives<'a, 'e> {
@@ -26,17 +27,17 @@ pub(super) struct Primitives<'a, 'e> {
     pub losses: Losses,
 }
 
-impl Primitives<'_, '_> {
-    fn accessor(&self, index: &At<'_>) -> Result<Accessor<'_>, ReadError> {
-        Ok(Accessor::open(&self.document, index, self.buffers, &self.context.limits)?)
+impl<'a> Primitives<'a, '_> {
+    fn open(&self, declared: Declared<'a>) -> Result<Accessor<'a>, ReadError> {
+        Ok(declared.open(&self.document, self.buffers, &self.context.limits)?)
     }
 
-    /// The geometries of a primitive: one, or as many as there are runs in a list of lines, or none.
-    pub fn read(&mut self, primitive: &At<'_>) -> Result<Vec<Arc<Geometry>>, ReadError> {
+    /// The geometry of a primitive, if it has one.
+    pub fn read(&mut self, primitive: &At<'_>) -> Result<Option<Arc<Geometry>>, ReadError> {
         self.context.exec.check()?;
         if primitive.value.pointer("/extensions/KHR_draco_mesh_compression").is_some() {
             let fault = primitive.fault("E-gltf-feature", "Draco compression", "plain data");
-            return Err(fault.category(shapeloom_core::Category::Unsupported).into());
+            return Err(fault.category(Category::Unsupported).into());
         }
         if primitive.get("targets")?.is_some() {
             self.losses.push("morph targets", "shapes have one form: the base was read");
@@ -46,31 +47,50 @@ impl Primitives<'_, '_> {
         let Some(position) = attributes.get("POSITION")? else {
             let message = format!("{} has no POSITION and was passed over", primitive.path);
             self.findings.push("W-gltf-position", Severity::Warning, Place::Whole, message);
-            return Ok(Vec::new());
+            return Ok(None);
         };
-        let position = self.accessor(&position)?;
-        if position.width != 3 {
-            let found = format!("{} numbers an element", position.width);
-            return Err(position.fault("type", "E-gltf-type", found, "VEC3 for POSITION").into());
-        }
-        if !position.is_float() {
-            let found = format!("component type {}", position.component_type);
-            return Err(position.fault("componentType", "E-gltf-type", found, "5126, single precision").into());
-        }
-        // Vectors that grow by collecting take at most this much.
-        self.memory.take(position.count, size_of::<DVec3>())?;
-        let position = self.accessor(&attributes.require("POSITION")?)?;
-        let at = |i: usize| DVec3::from_array([0, 1, 2].map(|axis| position.number(i, axis)));
-        let positions: Vec<DVec3> = (0..position.count).map(at).collect();
-        if let Some(index) = positions.iter().position(|position| !position.is_finite()) {
-            let (place, path) = (position.place(index), position.path.clone());
-            let message = format!("{path} holds positions that are not finite; they were kept");
-            self.findings.push("W-gltf-finite", Severity::Warning, place, message);
-        }
+        let positions = self.positions(&position)?;
         let columns = self.columns(&attributes, positions.len())?;
         let indices = self.indices(primitive, positions.len())?;
         self.context.exec.check()?;
-        self.assemble(primitive, mode, positions, columns, indices)
+        let vertices = Vertices { positions, columns };
+        let geometry = match mode {
+            0 => vertices.points(indices.as_deref(), self, primitive)?,
+            1 => self.segments(primitive, vertices, indices)?,
+            2 | 3 => vertices.line(indices.as_deref(), mode == 2, self, primitive)?,
+            4..=6 => self.triangles(primitive, mode, vertices, indices)?,
+            other => return Err(primitive.fault("E-gltf-mode", other.to_string(), "a mode from 0 to 6").into()),
+        };
+        Ok(Some(Arc::new(geometry)))
+    }
+
+    fn positions(&mut self, index: &At<'_>) -> Result<Vec<DVec3>, ReadError> {
+        let declared = Declared::read(&self.document, index)?;
+        if declared.width != 3 {
+            let found = format!("{} numbers an element", declared.width);
+            return Err(declared.fault(Some("type"), "E-gltf-type", found, "VEC3 for POSITION").into());
+        }
+        if declared.component_type != FLOAT {
+            let found = format!("component type {}", declared.component_type);
+            let key = Some("componentType");
+            return Err(declared.fault(key, "E-gltf-type", found, "5126, single precision").into());
+        }
+        let accessor = self.open(declared)?;
+        accessor.expect_backed()?;
+        // Vectors that grow by collecting take at most this much.
+        self.memory.take(accessor.count, size_of::<DVec3>())?;
+        let at = |element: usize| DVec3::from_array([0, 1, 2].map(|axis| accessor.number(element, axis)));
+        let positions: Vec<DVec3> = (0..accessor.count).map(at).collect();
+        if !self.context.options.drop_non_finite
+            && let Some(element) = positions.iter().position(|position| !position.is_finite())
+        {
+            let byte = accessor.byte(element).unwrap_or(0);
+            let found = format!("{} as element {element}, at byte {byte} of its buffer", positions[element]);
+            let mut fault = Fault::new("E-gltf-finite", accessor.place(element), found, "finite coordinates");
+            fault = fault.within(accessor.path.clone()).advice("repair the file, or drop what is not finite");
+            return Err(fault.into());
+        }
+        Ok(positions)
     }
 
     fn columns(&mut self, attributes: &At<'_>, count: usize) -> Result<Vec<Column>, ReadError> {
@@ -79,14 +99,13 @@ impl Primitives<'_, '_> {
             if semantic == "POSITION" {
                 continue;
             }
-            let accessor = self.accessor(&index)?;
+            let accessor = self.open(Declared::read(&self.document, &index)?)?;
             if accessor.count != count {
                 let found = accessor.count.to_string();
                 return Err(accessor.fault("count", "E-gltf-count", found, &format!("{count}, as of POSITION")).into());
             }
             let elements = accessor.count.saturating_mul(accessor.width);
             self.memory.take(elements, size_of::<f64>())?;
-            let accessor = self.accessor(&index)?;
             match columns::column(semantic, &accessor)? {
                 Ok(column) if columns.iter().all(|known| known.name() != column.name()) => columns.push(column),
                 Ok(_) => self.losses.column(Domain::Vertex, semantic, "another attribute has that name in shapes"),
@@ -100,18 +119,19 @@ impl Primitives<'_, '_> {
         let Some(index) = primitive.get("indices")? else {
             return Ok(None);
         };
-        let accessor = self.accessor(&index)?;
-        if !matches!(accessor.component_type, UNSIGNED_BYTE | UNSIGNED_SHORT | UNSIGNED_INT) {
-            let found = format!("component type {}", accessor.component_type);
-            return Err(accessor.fault("componentType", "E-gltf-type", found, "an unsigned type for indices").into());
+        let declared = Declared::read(&self.document, &index)?;
+        if !matches!(declared.component_type, UNSIGNED_BYTE | UNSIGNED_SHORT | UNSIGNED_INT) {
+            let found = format!("component type {}", declared.component_type);
+            return Err(declared.fault(None, "E-gltf-type", found, "an unsigned type for indices").into());
         }
-        if accessor.width != 1 {
-            let found = format!("{} numbers an element", accessor.width);
-            return Err(accessor.fault("type", "E-gltf-type", found, "SCALAR for indices").into());
+        if declared.width != 1 {
+            let found = format!("{} numbers an element", declared.width);
+            return Err(declared.fault(Some("type"), "E-gltf-type", found, "SCALAR for indices").into());
         }
+        let accessor = self.open(declared)?;
+        accessor.expect_backed()?;
         // Indices, and triangles made from them.
         self.memory.take(accessor.count, 4 * size_of::<u32>())?;
-        let accessor = self.accessor(&index)?;
         let indices: Vec<u32> = (0..accessor.count).map(|element| accessor.index(element)).collect();
         if let Some(element) = indices.iter().position(|&index| index as usize >= vertices) {
             let expected = format!("an index below {vertices}");
@@ -122,77 +142,116 @@ impl Primitives<'_, '_> {
         Ok(Some(indices))
     }
 
-    fn assemble(
+    /// The indices, or where there are none those of all vertices in order: an unindexed primitive means the same.
+    fn in_order(&mut self, indices: Option<Vec<u32>>, vertices: usize) -> Result<Vec<u32>, ReadError> {
+        if indices.is_none() {
+            self.memory.take(vertices, 4 * size_of::<u32>())?;
+        }
+        Ok(indices.unwrap_or_else(|| (0..vertices as u32).collect()))
+    }
+
+    fn left_over(&mut self, primitive: &At<'_>, what: &str) {
+        let message = format!("{} has corners left over, which make no {what}", primitive.path);
+        self.findings.push("W-gltf-corners", Severity::Warning, Place::Whole, message);
+    }
+
+    fn triangles(
         &mut self,
         primitive: &At<'_>,
         mode: u64,
-        positions: Vec<DVec3>,
-        columns: Vec<Column>,
+        vertices: Vertices,
         indices: Option<Vec<u32>>,
-    ) -> Result<Vec<Arc<Geometry>>, ReadError> {
-        if mode >= 4 {
-            // An unindexed primitive is as if it were indexed in order.
-            if indices.is_none() {
-                self.memory.take(positions.len(), 4 * size_of::<u32>())?;
-            }
-            let indices = indices.unwrap_or_else(|| (0..positions.len() as u32).collect());
-            let triangles = match mode {
-                4 => indices.chunks_exact(3).map(|corner| [corner[0], corner[1], corner[2]]).collect(),
-                5 => strip(&indices),
-                6 => fan(&indices),
-                other => return Err(primitive.fault("E-gltf-mode", other.to_string(), "a mode from 0 to 6").into()),
-            };
-            if (mode == 4 && !indices.len().is_multiple_of(3)) || (mode > 4 && indices.len() < 3) {
-                let message = format!("{} has corners left over, which make no triangle", primitive.path);
-                self.findings.push("W-gltf-corners", Severity::Warning, Place::Whole, message);
-            }
-            let wrong = |error: String| primitive.fault("E-gltf-mesh", error, "a mesh");
-            let mut mesh = TriMesh::try_new(positions, triangles).map_err(|error| wrong(error.to_string()))?;
-            for column in columns {
-                mesh.insert_attribute(Domain::Vertex, column).map_err(|error| wrong(error.to_string()))?;
-            }
-            return Ok(vec![Arc::new(Geometry::TriMesh(mesh))]);
-        }
-        let vertices = positions.len();
-        let gather = |sources: Option<&[u32]>| {
-            let sources = sources.filter(|sources| !sources.iter().copied().eq(0..vertices as u32));
-            match sources {
-                None => (positions.clone(), columns.clone()),
-                Some(sources) => {
-                    let points = sources.iter().map(|&source| positions[source as usize]).collect();
-                    (points, columns.iter().map(|column| column.gathered(sources)).collect())
-                }
-            }
+    ) -> Result<Geometry, ReadError> {
+        let indices = self.in_order(indices, vertices.positions.len())?;
+        let triangles = match mode {
+            5 => strip(&indices),
+            6 => fan(&indices),
+            _ => indices.chunks_exact(3).map(|corner| [corner[0], corner[1], corner[2]]).collect(),
         };
-        let bytes: usize = columns.iter().map(Column::memory_bytes).sum::<usize>() + positions.len() * 24;
-        let each = bytes.div_ceil(vertices.max(1)) + 4;
-        self.memory.take(indices.as_ref().map_or(vertices, Vec::len), 2 * each)?;
-        let wrong = |error: String| primitive.fault("E-gltf-mesh", error, "points and lines");
-        let line = |sources: Option<&[u32]>, closed: bool| {
-            let (points, columns) = gather(sources);
-            let mut line = Polyline::new(points, closed);
-            for column in columns {
-                line.insert_attribute(column).map_err(|error| wrong(error.to_string()))?;
-            }
-            Ok::<_, ReadError>(Arc::new(Geometry::Polyline(line)))
-        };
-        match mode {
-            0 => {
-                let (points, columns) = gather(indices.as_deref());
-                let mut cloud = PointCloud::new(points);
-                for column in columns {
-                    cloud.insert_attribute(column).map_err(|error| wrong(error.to_string()))?;
-                }
-                Ok(vec![Arc::new(Geometry::PointCloud(cloud))])
-            }
-            1 => {
-                let indices = indices.unwrap_or_else(|| (0..vertices as u32).collect());
-                let runs = runs(&indices);
-                self.memory.take(runs.len(), size_of::<Polyline>() + 64)?;
-                runs.iter().map(|run| line(Some(run), false)).collect()
-            }
-            mode => Ok(vec![line(indices.as_deref(), mode == 2)?]),
+        if (mode == 4 && !indices.len().is_multiple_of(3)) || (mode > 4 && indices.len() < 3) {
+            self.left_over(primitive, "triangle");
         }
+        let wrong = |error: String| primitive.fault("E-gltf-mesh", error, "a mesh");
+        let mut mesh = TriMesh::try_new(vertices.positions, triangles).map_err(|error| wrong(error.to_string()))?;
+        for column in vertices.columns {
+            mesh.insert_attribute(Domain::Vertex, column).map_err(|error| wrong(error.to_string()))?;
+        }
+        Ok(mesh.into())
+    }
+
+    /// A list of segments: one line if each starts where the one before ended, else a graph.
+    fn segments(
+        &mut self,
+        primitive: &At<'_>,
+        vertices: Vertices,
+        indices: Option<Vec<u32>>,
+    ) -> Result<Geometry, ReadError> {
+        let indices = self.in_order(indices, vertices.positions.len())?;
+        if !indices.len().is_multiple_of(2) {
+            self.left_over(primitive, "segment");
+        }
+        let segments: Vec<[u32; 2]> = indices.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect();
+        if let Some((points, closed)) = chain(&segments) {
+            return vertices.line(Some(&points), closed, self, primitive);
+        }
+        let wrong = |error: String| primitive.fault("E-gltf-mesh", error, "a graph");
+        let graph = GeometricGraph::try_new(vertices.positions, segments);
+        let mut graph = graph.map_err(|error| wrong(error.to_string()))?;
+        for column in vertices.columns {
+            graph.insert_vertex_attribute(column).map_err(|error| wrong(error.to_string()))?;
+        }
+        Ok(graph.into())
+    }
+}
+
+/// Positions and attributes of a primitive.
+struct Vertices {
+    positions: Vec<DVec3>,
+    columns: Vec<Column>,
+}
+
+impl Vertices {
+    /// The vertices at these indices; all of them in order where there are none.
+    fn gathered(self, sources: Option<&[u32]>, primitives: &mut Primitives<'_, '_>) -> Result<Self, ReadError> {
+        let count = self.positions.len();
+        let Some(sources) = sources.filter(|sources| !sources.iter().copied().eq(0..count as u32)) else {
+            return Ok(self);
+        };
+        let bytes: usize = self.columns.iter().map(Column::memory_bytes).sum::<usize>() + count * size_of::<DVec3>();
+        primitives.memory.take(sources.len(), 2 * (bytes.div_ceil(count.max(1)) + 4))?;
+        Ok(Self {
+            positions: sources.iter().map(|&source| self.positions[source as usize]).collect(),
+            columns: self.columns.iter().map(|column| column.gathered(sources)).collect(),
+        })
+    }
+
+    fn points(
+        self,
+        sources: Option<&[u32]>,
+        primitives: &mut Primitives<'_, '_>,
+        at: &At<'_>,
+    ) -> Result<Geometry, ReadError> {
+        let vertices = self.gathered(sources, primitives)?;
+        let mut cloud = PointCloud::new(vertices.positions);
+        for column in vertices.columns {
+            cloud.insert_attribute(column).map_err(|error| at.fault("E-gltf-mesh", error.to_string(), "points"))?;
+        }
+        Ok(cloud.into())
+    }
+
+    fn line(
+        self,
+        sources: Option<&[u32]>,
+        closed: bool,
+        primitives: &mut Primitives<'_, '_>,
+        at: &At<'_>,
+    ) -> Result<Geometry, ReadError> {
+        let vertices = self.gathered(sources, primitives)?;
+        let mut line = Polyline::new(vertices.positions, closed);
+        for column in vertices.columns {
+            line.insert_attribute(column).map_err(|error| at.fault("E-gltf-mesh", error.to_string(), "a line"))?;
+        }
+        Ok(line.into())
     }
 }
 
@@ -211,18 +270,6 @@ fn fan(indices: &[u32]) -> Vec<[u32; 3]> {
     rim.windows(2).map(|pair| [pair[0], pair[1], hub]).collect()
 }
 
-/// Segments in a row that meet, joined.
-fn runs(indices: &[u32]) -> Vec<Vec<u32>> {
-    let mut runs: Vec<Vec<u32>> = Vec::new();
-    for segment in indices.chunks_exact(2) {
-        match runs.last_mut() {
-            Some(run) if run.last() == Some(&segment[0]) => run.push(segment[1]),
-            _ => runs.push(segment.to_vec()),
-        }
-    }
-    runs
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,10 +279,5 @@ mod tests {
         assert_eq!(strip(&[0, 1, 2, 3]), [[0, 1, 2], [2, 1, 3]]);
         assert_eq!(fan(&[0, 1, 2, 3]), [[1, 2, 0], [2, 3, 0]]);
         assert!(strip(&[0, 1]).is_empty() && fan(&[]).is_empty());
-    }
-
-    #[test]
-    fn segments_that_meet_become_one_line() {
-        assert_eq!(runs(&[0, 1, 1, 2, 4, 5, 6]), [vec![0, 1, 2], vec![4, 5]]);
     }
 }

@@ -51,15 +51,10 @@ fn read_document<'e>(
     let placed = scene::placed_nodes(&root, &mut memory, &mut findings, context)?;
 
     let mut shape = Shape { units: Some(Units::METERS), up: Some(UpAxis::Y), ..Shape::default() };
-    if let Some(list) = root.get("materials")? {
-        for material in list.elements()? {
-            memory.take(1, 2 * size_of::<shapeloom_shape::Material>())?;
-            shape.materials.push(materials::from_json(&material, &root)?);
-        }
-    }
-    let losses = document_losses(&root)?;
+    let mut losses = document_losses(&root)?;
+    shape.materials = materials::read(&root, &mut memory, &mut losses)?;
     let mut primitives = Primitives { document: root.clone(), buffers: &buffers, context, memory, findings, losses };
-    let mut known: BTreeMap<String, Vec<Arc<Geometry>>> = BTreeMap::new();
+    let mut known: BTreeMap<String, Option<Arc<Geometry>>> = BTreeMap::new();
     let count = placed.len();
     for (done, placed) in placed.iter().enumerate() {
         context.exec.progress(done as f64 / count as f64);
@@ -88,7 +83,7 @@ fn read_document<'e>(
                 }
                 None => None,
             };
-            for geometry in known.get(&key).into_iter().flatten() {
+            if let Some(geometry) = known.get(&key).into_iter().flatten().next() {
                 primitives.memory.take(name.len() + 2 * size_of::<Part>(), 1)?;
                 let (geometry, placement) = (Arc::clone(geometry), placed.placement);
                 shape.parts.push(Part { name: name.to_owned(), geometry, placement, material });
@@ -133,11 +128,7 @@ fn check_asset(root: &At<'_>) -> Result<(), Box<Fault>> {
 /// What shapes have no place for, by the lists of the document.
 fn document_losses(root: &At<'_>) -> Result<Losses, Box<Fault>> {
     let mut losses = Losses::default();
-    for (list, why) in [
-        ("animations", "shapes do not move"),
-        ("cameras", "shapes have no cameras"),
-        ("textures", "pictures are not read; the name of the base colour texture is kept, if there is one"),
-    ] {
+    for (list, why) in [("animations", "shapes do not move"), ("cameras", "shapes have no cameras")] {
         let count = root.count(list)?;
         if count > 0 {
             losses.push(format!("{count} {list}"), why);

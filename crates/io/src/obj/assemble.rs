@@ -27,8 +27,9 @@ use crate::{Fault, ReadContext, ReadError, ReadShape, audit};
 pub(super) const WEIGHT: &str = "weight";
 /// The column of the object that a face belongs to, where objects share vertices.
 pub(super) const OBJECT: &str = "object";
-/// More parts would take memory out of proportion to the file.
-const MOST_PARTS: usize = 1 << 16;
+/// A part takes about a kilobyte: beyond this many, and one for every 32 bytes of the file, they would take memory out of
+/// proportion to it. An object with a triangle of its own takes more text.
+const MANY_PARTS: usize = 1 << 14;
 /// No part has the vertex.
 const NOBODY: u32 = u32::MAX;
 
@@ -40,9 +41,10 @@ pub(super) fn assemble(
 ) -> Result<ReadShape, ReadError> {
     let mut losses = Vec::new();
     let statements = Statements::read(&whole, memory, findings)?;
-    if statements.objects.len() > MOST_PARTS {
+    let most = MANY_PARTS + whole.text.len() / 32;
+    if statements.objects.len() > most {
         let found = format!("{} objects", statements.objects.len() - 1);
-        let fault = Fault::new("E-obj-limit", Place::Whole, found, format!("at most {}", MOST_PARTS - 1));
+        let fault = Fault::new("E-obj-limit", Place::Whole, found, format!("at most {most} in a file of this length"));
         return Err(fault.category(Category::OverLimit).into());
     }
     let materials = mtl::materials(&statements, context, findings, &mut losses)?;
@@ -85,9 +87,10 @@ pub(super) fn assemble(
         columns.list.into_iter().try_for_each(|column| cloud.insert_attribute(column)).map_err(unfit)?;
         shape.parts.push(Part::new(cloud).named(name));
     }
-    let of_runs = |runs: &[Run], object: u32| {
-        let mut own = runs.iter().filter(|run| run.labels.object == object);
-        own.next().map(|run| run.labels.material)
+    // Runs stand in the order of the objects.
+    let first_material = |runs: &[Run], object: u32| {
+        let first = runs.partition_point(|run| run.labels.object < object);
+        runs.get(first).and_then(|run| run.labels.material.checked_sub(1))
     };
     let mut placed: Vec<(u32, Part)> = Vec::new();
     for (object, faces, geometry) in mesh_parts {
@@ -97,8 +100,7 @@ pub(super) fn assemble(
     }
     for (object, runs_of, geometry) in side_parts {
         let runs = if runs_of == Domain::Face { &statements.lines } else { &statements.points };
-        let material = of_runs(runs, object).and_then(|id| id.checked_sub(1));
-        placed.push((object, Part { material, ..Part::new(geometry) }));
+        placed.push((object, Part { material: first_material(runs, object), ..Part::new(geometry) }));
     }
     // In the order of the objects, meshes before lines before points.
     placed.sort_by_key(|(object, _)| *object);

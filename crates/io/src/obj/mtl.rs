@@ -14,8 +14,8 @@ use super::labels::Statements;
 use crate::text::{Scanner, plain_text, quoted};
 use crate::{ReadContext, ReadError, SiblingError, SiblingName};
 
-/// No library is longer than this.
-const MOST_BYTES: u64 = 1 << 24;
+/// All libraries of a file together are no longer than this: a material takes some 30 times its shortest text.
+const MOST_BYTES: u64 = 1 << 21;
 
 /// The materials that the file uses, in the order of their first use, then the others of its libraries.
 pub(super) fn materials(
@@ -27,6 +27,7 @@ pub(super) fn materials(
     let mut library = Library::default();
     let mut complete = true;
     let mut seen = BTreeSet::new();
+    let mut room = MOST_BYTES;
     for (words, offset) in &statements.libraries {
         if !seen.insert(words) {
             continue;
@@ -35,10 +36,19 @@ pub(super) fn materials(
         let place = Place::Byte(*offset as u64);
         // A name may have spaces, or there are several.
         let several: Vec<&str> = words.split_whitespace().collect();
-        let names = if several.len() > 1 && open(words, context).is_err() { several } else { vec![words.as_str()] };
+        let names = if several.len() > 1 && open(words, 1, context).is_err() { several } else { vec![words.as_str()] };
         for name in names {
-            match open(name, context) {
-                Ok(bytes) => library.read(name, &bytes, &place, context, findings),
+            match open(name, room + 1, context) {
+                Ok(bytes) if bytes.len() as u64 <= room => {
+                    room -= bytes.len() as u64;
+                    library.read(name, &bytes, &place, context, findings);
+                }
+                Ok(_) => {
+                    complete = false;
+                    let message =
+                        format!("\"{name}\" was not read: found more than {MOST_BYTES} bytes of material libraries");
+                    findings.push("W-obj-library", Severity::Warning, place.clone(), message);
+                }
                 Err(why) => {
                     complete = false;
                     let message = format!("the material library \"{name}\" was not read: {why}");
@@ -80,11 +90,11 @@ pub(super) fn materials(
     Ok(materials)
 }
 
-fn open(name: &str, context: &ReadContext) -> Result<Vec<u8>, SiblingError> {
+fn open(name: &str, max_bytes: u64, context: &ReadContext) -> Result<Vec<u8>, SiblingError> {
     let sibling = SiblingName::try_new(name)?;
     match &context.siblings {
         None => Err(SiblingError::Io("the input stands alone".into())),
-        Some(siblings) => siblings.open(&sibling, MOST_BYTES + 1),
+        Some(siblings) => siblings.open(&sibling, max_bytes),
     }
 }
 
@@ -107,9 +117,6 @@ impl Library {
             let message = format!("{file}: line {line}: {what}; it was passed over");
             findings.push("W-obj-library", Severity::Warning, place.clone(), message);
         };
-        if bytes.len() as u64 > MOST_BYTES {
-            return odd(1, format!("found more than {MOST_BYTES} bytes"));
-        }
         let Ok(text) = plain_text(bytes, &context.limits) else {
             return odd(1, "found no UTF-8 text".into());
         };

@@ -39,24 +39,31 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
 /// offsets stay. Comments do not go on: programs write paths in them.
 fn joined(text: &[u8]) -> Cow<'_, [u8]> {
     let mut changed: Option<Vec<u8>> = None;
-    let mut from = 0;
+    // Whether the line that `from` is in is a comment, and where it is looked at from: never twice the same bytes.
+    let (mut from, mut comment) = (0, starts_comment(text));
     while let Some(at) = memchr::memchr(b'\\', &text[from..]).map(|found| from + found) {
+        if let Some(before) = memchr::memrchr2(b'\n', b'\r', &text[from..at]) {
+            comment = starts_comment(&text[from + before + 1..at]);
+        }
         let end = match text.get(at + 1..) {
             Some([b'\r', b'\n', ..]) => at + 3,
             Some([b'\n' | b'\r', ..]) => at + 2,
             _ => at + 1,
         };
         if end > at + 1 {
-            let now = changed.as_deref().unwrap_or(text);
-            let line = memchr::memrchr2(b'\n', b'\r', &now[..at]).map_or(0, |before| before + 1);
-            let comment = now[line..at].trim_ascii_start().starts_with(b"#");
-            if !comment {
+            if comment {
+                comment = starts_comment(&text[end..]);
+            } else {
                 changed.get_or_insert_with(|| text.to_vec())[at..end].fill(b' ');
             }
         }
         from = end;
     }
     changed.map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
+fn starts_comment(line: &[u8]) -> bool {
+    line.iter().find(|byte| !matches!(byte, b' ' | b'\t')) == Some(&b'#')
 }
 
 /// What a whole file says, in one numbering.
@@ -391,6 +398,7 @@ mod tests {
         assert_eq!(&*joined(b"f 1 \\\n2\\\r\n3\n"), b"f 1   2   3\n");
         assert_eq!(&*joined(b"# C:\\\nv 1"), b"# C:\\\nv 1");
         assert_eq!(&*joined(b"f 1\\\n# 2"), b"f 1  # 2");
+        assert_eq!(&*joined(b" #a\\\n#b\\\nc\\\nd\n#e\\\nf\\\n\\\ng"), b" #a\\\n#b\\\nc  d\n#e\\\nf    g");
         assert!(matches!(joined(b"mtllib a\\b.mtl\n"), Cow::Borrowed(_)));
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Category, Findings, Limits, OverBudget, Place, Severity};
 
+use crate::audit::DROP_ADVICE;
 use crate::faces::Faces;
 use crate::memory::{Growing, Memory};
 use crate::text::{CountFault, NumberFault, Scanner, quoted};
@@ -444,8 +445,11 @@ fn pad(values: &mut Growing<u32>, memory: &mut Memory<'_>, to: usize) -> Result<
 
 #[cold]
 fn number_fault(at: &Scanner<'_>, fault: NumberFault, what: &str) -> ReadError {
-    let code = if fault == NumberFault::Syntax { "E-obj-number" } else { "E-obj-finite" };
-    Fault::new(code, at.place(), at.found(), fault.to_string()).within(what).into()
+    if fault == NumberFault::Syntax {
+        return Fault::new("E-obj-number", at.place(), at.found(), fault.to_string()).within(what).into();
+    }
+    let fault = Fault::new("E-obj-finite", at.place(), at.found(), fault.to_string());
+    fault.within(what).advice(DROP_ADVICE).into()
 }
 
 #[cold]

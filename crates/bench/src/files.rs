@@ -1,0 +1,77 @@
+//! Mesh files of a million triangles, read and written.
+
+use std::path::PathBuf;
+
+use serde_json::{Map, json};
+use shapeloom_core::Exec;
+use shapeloom_io::{Format, ReadContext, WriteContext, detect, format_by_id, read, slurp_sized, write};
+use shapeloom_shape::{Geometry, Shape};
+
+use crate::{Outcome, Setting, measure};
+
+/// The inputs, as far as they are there.
+fn inputs(setting: &Setting) -> Result<Vec<PathBuf>, String> {
+    let names = ["ply", "stl", "obj", "off", "glb"].map(|extension| setting.data.join(format!("blob_1m.{extension}")));
+    let found: Vec<PathBuf> = names.into_iter().filter(|path| path.exists()).collect();
+    if found.is_empty() {
+        let folder = setting.data.display();
+        return Err(format!("{folder}: found no blob_1m.ply, .stl, .obj, .off or .glb, expected at least one"));
+    }
+    Ok(found)
+}
+
+fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), String> {
+    let name = path.display().to_string();
+    let said = |error: &dyn std::fmt::Display| format!("{name}: {error}");
+    let file = std::fs::File::open(path).map_err(|error| said(&error))?;
+    let length = file.metadata().map_or(0, |data| data.len());
+    let context = ReadContext::named(name.as_str());
+    let bytes = slurp_sized(file, length, &context.limits, &context.exec).map_err(|error| said(&error))?;
+    let format = detect(&bytes, Some(&name)).map_err(|error| said(&error))?;
+    let shape = read(&bytes, format, &context).map_err(|error| said(&error))?.shape;
+    Ok((shape, format, bytes.len() as u64))
+}
+
+fn sizes(shape: &Shape) -> (usize, usize) {
+    shape.parts.iter().fold((0, 0), |(vertices, triangles), part| match &*part.geometry {
+        Geometry::TriMesh(mesh) => (vertices + mesh.positions().len(), triangles + mesh.triangles().len()),
+        Geometry::PolyMesh(mesh) => (vertices + mesh.positions().len(), triangles + mesh.triangle_count()),
+        _ => (vertices, triangles),
+    })
+}
+
+fn outcome(input: String, times: measure::Times, bytes: u64, shape: &Shape) -> Outcome {
+    let (vertices, triangles) = sizes(shape);
+    let mut figures = Map::new();
+    figures.insert("bytes".into(), json!(bytes));
+    figures.insert("vertices".into(), json!(vertices));
+    figures.insert("triangles".into(), json!(triangles));
+    figures.insert("mb_per_cpu_s".into(), json!(bytes as f64 / 1e6 / times.cpu));
+    Outcome { input, times, figures }
+}
+
+/// From the file to the mesh.
+pub(crate) fn read_files(setting: &Setting) -> Result<Vec<Outcome>, String> {
+    let one = |path: &PathBuf| {
+        let ((shape, _, bytes), times) = measure::fastest(setting.runs, || load(path))?;
+        Ok(outcome(path.display().to_string(), times, bytes, &shape))
+    };
+    inputs(setting)?.iter().map(one).collect()
+}
+
+/// From the mesh to bytes in memory, in every format.
+pub(crate) fn write_files(setting: &Setting) -> Result<Vec<Outcome>, String> {
+    let path = &inputs(setting)?[0];
+    let (shape, _, _) = load(path)?;
+    let one = |id: &str| {
+        let format = format_by_id(id).map_err(|error| error.to_string())?;
+        let context = WriteContext { exec: Exec::default(), ..WriteContext::default() };
+        let (bytes, times) = measure::fastest(setting.runs, || {
+            let mut bytes = Vec::new();
+            write(&shape, format, &context, &mut bytes).map_err(|error| error.to_string())?;
+            Ok(bytes)
+        })?;
+        Ok(outcome(format!("{} as {id}", path.display()), times, bytes.len() as u64, &shape))
+    };
+    ["ply", "stl", "obj", "off", "glb"].into_iter().filter(|id| format_by_id(id).is_ok()).map(one).collect()
+}

@@ -1,0 +1,75 @@
+//! Figures beside those of peers, as a table for docs/PERFORMANCE.md.
+
+use serde_json::Value;
+
+use crate::{Outcome, Task};
+
+/// A peer's figures for one piece of work.
+struct Peer {
+    name: String,
+    cpu: f64,
+    wall: f64,
+}
+
+/// A Markdown table: for each outcome the peers that did the same work, the fastest first. `lines` are JSON objects with
+/// `task`, `peer`, `version`, `wall_s` and `cpu_s`.
+pub(crate) fn markdown(task: Task, outcomes: &[Outcome], lines: &str) -> Result<String, String> {
+    let mut table = String::from(
+        "| work | shapeloom, CPU s (wall) | peer | CPU s (wall) | peer's CPU over ours |\n|---|---:|---|---:|---:|\n",
+    );
+    for outcome in outcomes {
+        let ours = format!("{:.4} ({:.4})", outcome.times.cpu, outcome.times.wall);
+        let name = outcome.input.rsplit('/').next().unwrap_or_default();
+        let mut peers = peers(&task.peer_task(&outcome.input), lines)?;
+        peers.sort_by(|a, b| a.cpu.total_cmp(&b.cpu));
+        if peers.is_empty() {
+            table += &format!("| {} {name} | {ours} | | | |\n", task.name());
+        }
+        for (rank, peer) in peers.iter().take(4).enumerate() {
+            let work = if rank == 0 { format!("{} {name}", task.name()) } else { String::new() };
+            let ours = if rank == 0 { ours.as_str() } else { "" };
+            let ratio = peer.cpu / outcome.times.cpu;
+            table +=
+                &format!("| {work} | {ours} | {} | {:.4} ({:.4}) | {ratio:.2} |\n", peer.name, peer.cpu, peer.wall);
+        }
+    }
+    Ok(table)
+}
+
+fn peers(task: &str, lines: &str) -> Result<Vec<Peer>, String> {
+    let mut found = Vec::new();
+    for (number, line) in lines.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+        let line: Value = serde_json::from_str(line).map_err(|error| format!("line {}: {error}", number + 1))?;
+        let text = |key: &str| line[key].as_str().unwrap_or_default().to_owned();
+        if text("task") != task {
+            continue;
+        }
+        if let (Some(cpu), Some(wall)) = (line["cpu_s"].as_f64(), line["wall_s"].as_f64()) {
+            found.push(Peer { name: format!("{} {}", text("peer"), text("version")), cpu, wall });
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::Times;
+
+    #[test]
+    fn the_fastest_peer_of_the_same_work_comes_first() {
+        let outcome = Outcome {
+            input: "a/blob_1m.obj".into(),
+            times: Times { wall: 0.1, cpu: 0.2 },
+            figures: Default::default(),
+        };
+        let lines = "{\"task\":\"m.read_1m_obj\",\"peer\":\"slow\",\"version\":\"1\",\"wall_s\":2,\"cpu_s\":2}\n\
+            {\"task\":\"m.read_1m_off\",\"peer\":\"other\",\"version\":\"1\",\"wall_s\":0.1,\"cpu_s\":0.1}\n\
+            {\"task\":\"m.read_1m_obj\",\"peer\":\"fast\",\"version\":\"2\",\"wall_s\":0.5,\"cpu_s\":0.5}\n";
+        let table = markdown(Task::Read, &[outcome], lines).unwrap();
+        let rows: Vec<&str> = table.lines().skip(2).collect();
+        assert_eq!(rows[0], "| read blob_1m.obj | 0.2000 (0.1000) | fast 2 | 0.5000 (0.5000) | 2.50 |");
+        assert!(rows[1].contains("slow 1") && rows.len() == 2);
+        assert!(markdown(Task::Read, &[], "nonsense").is_ok());
+    }
+}

@@ -1,0 +1,193 @@
+//! Readers on inputs that were changed at random, the same each time.
+
+use std::collections::HashMap;
+
+use shapeloom::core::Options;
+use shapeloom::core::glam::DVec3;
+use shapeloom::io::{FORMATS, WriteContext, WriteOptions, write};
+use shapeloom::mesh::{COLOR, Column, Domain, GeometricGraph, NORMAL, PointCloud, TEXCOORD, Values};
+use shapeloom::shape::{Material, Part, Shape};
+
+use crate::entry::read_as;
+use crate::shapes;
+use crate::support::{Dice, root};
+
+/// Inputs of each format by hand, beside those that the writers make.
+const BY_HAND: [(&str, &str); 12] = [
+    (
+        "obj",
+        "mtllib a.mtl\no a\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvt 0 0\nvn 0 0 1\ng b c\nusemtl m\ns 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -4//1 -3//1 \\\n-2//1\nl 1 2 3\np 1 2\n",
+    ),
+    ("obj", "v 0 0 0\r\nv 1 0 0 0.5\r\nv 1 1 0\r\nf 1 2 3\r\no b\r\nv 5 5 5\r\np -1\r\ncstype bezier\r\n"),
+    (
+        "off",
+        "COFF\n# comment\n4 2 0\n0 0 0 255 0 0 255\n1 0 0 0 255 0 255\n1 1 0 0 0 255 255\n0 1 0 9 9 9 255\n3 0 1 2\n3 0 2 3 10 20 30\n",
+    ),
+    (
+        "off",
+        "STCN4OFF 3 1 0\n0 0 0 1 0 0 1 1 0 0 1 0 0\n1 0 0 1 0 0 1 1 0 0 1 1 0\n0 1 0 2 0 0 1 1 0 0 1 0 1\n3 0 1 2\n",
+    ),
+    (
+        "stl",
+        "solid a b\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid a b\nsolid c\nendsolid\n",
+    ),
+    (
+        "ply",
+        "ply\nformat ascii 1.0\ncomment c\nobj_info i\nelement vertex 4\nproperty float x\nproperty double y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty list uchar int tags\nelement face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nelement odd 2\nproperty short s\nend_header\n0 0 0 1 2 3 1 7\n1 0 0 1 2 3 0\n1 1 0 1 2 3 2 1 2\n0 1 0 1 2 3 0\n3 0 1 2 6 0 0 1 0 1 1\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n0 1\n5\n6\n",
+    ),
+    (
+        "ply",
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n6 0 1 2 3 -1 2\n",
+    ),
+    (
+        "gltf",
+        r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,0,0,1]}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":0}}},{"bufferView":1,"componentType":5123,"count":3,"type":"SCALAR"}],"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":6}],"buffers":[{"byteLength":44,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAABAAIAAAA="}]}"#,
+    ),
+    ("bpt", "1\n1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 0.5\n"),
+    (
+        "stl",
+        "solid\nfacet normal nan 0 0\n outer loop\n vertex 1e39 0 0\n vertex 0 1 0\n vertex 0 0 1\n endloop\n endfacet\nendsolid\n",
+    ),
+    ("off", "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 1\n"),
+    (
+        "ply",
+        "ply\rformat ascii 1.0\relement vertex 1\rproperty int8 x\rproperty uint16 y\rproperty float64 z\rend_header\r-1 2 3\r",
+    ),
+];
+
+/// Words that break readers.
+const WORDS: [&[u8]; 20] = [
+    b"4294967295",
+    b"-1",
+    b"0",
+    b"1e400",
+    b"nan",
+    b"inf",
+    b"99999999999999999999",
+    b"18446744073709551615",
+    b"-0",
+    b"1e-400",
+    b"2147483648",
+    b"#",
+    b"\\\n",
+    b"\r",
+    b"\xff\xff\xff\xff",
+    b"\0\0\0\x80",
+    b"\0\0\xc0\x7f",
+    b"{",
+    b"[[",
+    b"\"",
+];
+
+fn shapes() -> Vec<Shape> {
+    let mut cube = shapes::tagged_polygons();
+    let vertices = cube.positions().len();
+    let normals: Vec<DVec3> = cube.positions().iter().map(|point| point.normalize_or(DVec3::Z)).collect();
+    cube.insert_attribute(Domain::Vertex, Column::normals(NORMAL, &normals)).expect("a normal each");
+    let colors = Values::U8((0..3 * vertices).map(|i| i as u8).collect());
+    let colors = Column::try_new(COLOR, 3, colors).expect("three a vertex");
+    cube.insert_attribute(Domain::Vertex, colors).expect("a colour each");
+    let uv = vec![[0.25, 0.5]; cube.wedge_vertices().len()];
+    cube.insert_attribute(Domain::Wedge, Column::texcoords(TEXCOORD, &uv)).expect("coordinates each");
+    let graph = GeometricGraph::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1], [0, 2]]).expect("a graph");
+    let soup = Part { material: Some(0), ..Part::new(shapes::tagged_triangles()).named("soup") };
+    let materials = vec![Material { name: "red".into(), ..Material::default() }];
+    vec![
+        Shape::new(Part::new(cube).named("cube")),
+        Shape { materials, ..Shape::new(soup) },
+        Shape { parts: vec![Part::new(graph), Part::new(PointCloud::new(vec![DVec3::ONE; 3]))], ..Shape::default() },
+        Shape::new(Part::new(shapeloom::parametric::BezierSurface::new(vec![shapes::bent_patch()]))),
+    ]
+}
+
+/// Small sound inputs of every format that is read.
+fn corpus() -> HashMap<&'static str, Vec<Vec<u8>>> {
+    let mut corpus: HashMap<&'static str, Vec<Vec<u8>>> = HashMap::new();
+    for (id, text) in BY_HAND {
+        corpus.entry(id).or_default().push(text.as_bytes().to_vec());
+    }
+    for format in FORMATS.iter().filter(|format| format.writes.is_some() && format.reads.is_some()) {
+        for shape in shapes() {
+            let encodings: &[&str] = match format.write_options.contains(&"encoding") {
+                true => &["automatic", "ascii", "binary", "binary-big-endian"],
+                false => &["automatic"],
+            };
+            for encoding in encodings {
+                let mut options = WriteOptions::new();
+                options.set("encoding", encoding).expect("a word of the choice");
+                let mut bytes = Vec::new();
+                let context = WriteContext { options, ..WriteContext::default() };
+                if write(&shape, format, &context, &mut bytes).is_ok() && bytes.len() < 40_000 {
+                    corpus.entry(format.id).or_default().push(bytes);
+                }
+            }
+        }
+    }
+    corpus
+}
+
+fn mutate(input: &[u8], others: &[Vec<u8>], dice: &mut Dice) -> Vec<u8> {
+    let mut bytes = input.to_vec();
+    for _ in 0..1 + dice.next() % 4 {
+        let at = dice.next() as usize % (bytes.len() + 1);
+        let end = (at + dice.next() as usize % 24).min(bytes.len());
+        match dice.next() % 8 {
+            0 if at < bytes.len() => bytes[at] ^= 1 << (dice.next() % 8),
+            1 if at < bytes.len() => bytes[at] = dice.next() as u8,
+            2 => drop(bytes.drain(at..end)),
+            3 => {
+                let piece = bytes[at..end].to_vec();
+                bytes.splice(at..at, piece);
+            }
+            4 => bytes.truncate(at.max(1)),
+            5 => {
+                let other = &others[dice.next() as usize % others.len()];
+                let from = dice.next() as usize % other.len();
+                let to = (from + dice.next() as usize % 64).min(other.len());
+                bytes.splice(at..end, other[from..to].iter().copied());
+            }
+            _ => {
+                // A whole word or number becomes one of the words that break readers.
+                let word = WORDS[dice.next() as usize % WORDS.len()];
+                let is_word = |byte: &u8| !byte.is_ascii_whitespace() && *byte != b',' && *byte != b'/';
+                let start = bytes[..at].iter().rposition(|byte| !is_word(byte)).map_or(0, |before| before + 1);
+                let stop = bytes[at..].iter().position(|byte| !is_word(byte)).map_or(bytes.len(), |after| at + after);
+                bytes.splice(start..stop.min(start + 40), word.iter().copied());
+            }
+        }
+    }
+    bytes
+}
+
+/// Readers neither panic nor take more than 64 MB and 40 times the input, and what they read they can write and read.
+#[test]
+fn changed_inputs_are_read_or_refused() {
+    let corpus = corpus();
+    let mut dice = Dice(2026);
+    for format in FORMATS.iter().filter(|format| format.reads.is_some()) {
+        let inputs = corpus.get(format.id).unwrap_or_else(|| panic!("{}: add a sound input here", format.id));
+        let mut read = 0;
+        for input in inputs {
+            read += usize::from(read_as(format.id, input));
+        }
+        assert_eq!(read, inputs.len(), "{}: sound inputs are read", format.id);
+        let (mut accepted, rounds) = (0, 6000);
+        for round in 0..rounds {
+            let input = &inputs[round % inputs.len()];
+            accepted += usize::from(read_as(format.id, &mutate(input, inputs, &mut dice)));
+        }
+        // Neither all nor none: the changes are neither harmless nor hopeless.
+        assert!((rounds / 100..rounds).contains(&accepted), "{}: {accepted} of {rounds}", format.id);
+    }
+}
+
+/// Every format that is read has a fuzz target.
+#[test]
+fn every_reader_has_a_fuzz_target() {
+    let manifest = std::fs::read_to_string(root().join("tests/fuzz/Cargo.toml")).expect("the fuzz package");
+    for format in FORMATS.iter().filter(|format| format.reads.is_some()) {
+        let name = format!("read_{}", format.id);
+        let target = std::fs::read_to_string(root().join(format!("tests/fuzz/targets/{name}.rs"))).expect(&name);
+        assert!(target.contains(&format!("read_as(\"{}\"", format.id)) && manifest.contains(&name), "{name}");
+    }
+}
