@@ -121,7 +121,7 @@ fn coordinates_of_five_million_metres_lose_nothing_in_glb() {
 #[test]
 fn made_shapes_go_through_every_writer() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    for extension in ["glb", "gltf", "ply", "obj"] {
+    for extension in ["glb", "gltf", "ply", "obj", "off", "stl"] {
         for shape in [
             "tetrahedron",
             "cube",

@@ -54,29 +54,25 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-gltf-feature", "The file uses a part of glTF that is not read: compressed data."),
     (
         "E-gltf-finite",
-        "A position is infinite or not a number. Repair the file, or read it with the option drop_non_finite, which \
-     leaves out such vertices with the faces that use them.",
+        "A position is infinite or not a number. Repair the file, or read it with the option drop_non_finite, which leaves out such vertices with the faces that use them.",
     ),
     ("E-gltf-index", "An index of a primitive names a vertex that does not exist."),
     ("E-gltf-json", "The document is not valid JSON. The message names the first place at fault."),
     (
         "E-gltf-limit",
-        "The file has more elements than the reader's limits allow, or claims very many that are nowhere in it and \
-     would all be zeros.",
+        "The file has more elements than the reader's limits allow, or claims very many that are nowhere in it and would all be zeros.",
     ),
     ("E-gltf-mesh", "The vertices, indices and attributes of a primitive make no mesh."),
     ("E-gltf-missing", "A member that glTF requires is absent."),
     ("E-gltf-mode", "The mode of a primitive is a number from 0, points, to 6, a fan of triangles."),
     (
         "E-gltf-parents",
-        "The scene reaches a node twice in the same place. The nodes of a scene must be a tree; instances share a mesh, \
-     not a node.",
+        "The scene reaches a node twice in the same place. The nodes of a scene must be a tree; instances share a mesh, not a node.",
     ),
     ("E-gltf-reference", "A number names an element of a list that is not there."),
     (
         "E-gltf-sparse",
-        "The indices of a sparse accessor must strictly rise and stay below its count. The program that wrote the file \
-     did not sort them.",
+        "The indices of a sparse accessor must strictly rise and stay below its count. The program that wrote the file did not sort them.",
     ),
     (
         "E-gltf-type",
@@ -102,6 +98,29 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-obj-row", "A vertex, normal or texture coordinate has too few or too many numbers."),
     ("E-obj-truncated", "The file ends within a free-form curve or surface."),
+    (
+        "E-off-color",
+        "A colour is three or four numbers, fractions from 0 or whole numbers from 0 to 255; one whole number is an index into a colour map.",
+    ),
+    ("E-off-count", "A count is below zero."),
+    ("E-off-dimension", "Only vertices of one to three coordinates are read. Project shapes of more dimensions first."),
+    (
+        "E-off-finite",
+        "A number of a vertex is infinite, no number, or larger than the largest double. Repair the program that wrote the file, or have vertices that are not finite left out.",
+    ),
+    ("E-off-header", "An OFF file begins with a keyword such as OFF, COFF or NOFF, or with its number of vertices."),
+    ("E-off-index", "A face names a vertex that does not exist. Vertices are counted from 0."),
+    ("E-off-limit", "The file has more vertices, faces or corners of one face than the reader's limits allow."),
+    (
+        "E-off-number",
+        "A number was expected and something else was found. Counts and the numbers of vertices are digits alone; numbers have a decimal point, never a comma.",
+    ),
+    (
+        "E-off-row",
+        "A line has too many or too few numbers. Each vertex and each face is on one line. Where the first line of the faces is named, the header may promise more vertices than are listed.",
+    ),
+    ("E-off-truncated", "The file ends before the numbers of vertices and faces that its header promises."),
+    ("E-off-weight", "A vertex of a 4OFF file has the homogeneous weight 0: it is infinitely far away."),
     (
         "E-ply-claim",
         "The header of a PLY file promises more rows than the bytes after it have room for. The file was cut off, or its header is wrong. Nothing is allocated because a header says so.",
@@ -154,6 +173,27 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The input names a file beside it that is not there, too long or unreadable, or the input is read alone so that nothing is beside it.",
     ),
     ("E-sibling-path", "The input names a file outside of its own folder. Such files are never opened."),
+    (
+        "E-stl-claim",
+        "The count of a binary STL file is larger than its number of bytes, so that it cannot be right. It may be in the other byte order, or the file may be no STL.",
+    ),
+    (
+        "E-stl-finite",
+        "A coordinate is infinite, no number, or larger than the largest double. Repair the program that wrote the file, or have vertices that are not finite left out.",
+    ),
+    (
+        "E-stl-limit",
+        "The file has more facets or solids than the reader's limits allow, or than 32 bits can count the corners of.",
+    ),
+    (
+        "E-stl-number",
+        "A coordinate was expected and something else was found. Numbers have a decimal point, never a comma.",
+    ),
+    (
+        "E-stl-row",
+        "Another word was expected here. A facet is: facet normal, outer loop, three times vertex with three numbers, endloop, endfacet.",
+    ),
+    ("E-stl-truncated", "The file ends before its last facet does. It was cut off; get it again."),
     ("E-text-encoding", "The text is in UTF-16 or UTF-32. Save it as UTF-8."),
     ("E-text-line", "A line is longer than the reader's limits allow. It may not be text at all."),
     (
@@ -192,8 +232,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-matrix", "The last row of a node's matrix must be 0 0 0 1, and was taken as that."),
     (
         "W-gltf-parents",
-        "A node has several parents, which glTF forbids: nodes must be a tree. Each way to it puts it somewhere else, so \
-     that it was read as instances.",
+        "A node has several parents, which glTF forbids: nodes must be a tree. Each way to it puts it somewhere else, so that it was read as instances.",
     ),
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
@@ -217,6 +256,13 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-obj-texture", "A texture that a material names is not beside the file. Its name was kept."),
     ("W-obj-weight", "A vertex has the weight 0. Weights mean nothing for polygons; they are kept as a column."),
     (
+        "W-off-degenerate",
+        "A face has fewer than three corners and was left out, or names a vertex twice or has no area and was kept.",
+    ),
+    ("W-off-empty", "The file has no vertices; the mesh is empty."),
+    ("W-off-header", "The number of vertices follows the keyword without a space."),
+    ("W-off-trailing", "More follows after the last face. It was not read; the number of faces may be too small."),
+    (
         "W-ply-degenerate",
         "Faces, or strips, of fewer than three corners were left out; faces that name a vertex twice or have no area were kept.",
     ),
@@ -236,6 +282,18 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-ply-trailing", "Data follows after the last row that the header promises. It was passed over."),
     ("W-ply-version", "The format has another version than 1.0, the only one there is. The file was read as that."),
     ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
+    ("W-stl-color", "Some facets of a binary STL file have a colour and others have none. These were taken as white."),
+    ("W-stl-degenerate", "A facet has two equal corners, or its corners lie on one line. It was kept."),
+    ("W-stl-empty", "The file has no facets; the mesh is empty."),
+    (
+        "W-stl-normal",
+        "A stored normal is not three finite numbers. Stored normals are not kept: they follow from the corners.",
+    ),
+    (
+        "W-stl-solid",
+        "A solid begins or ends without the word that belongs there. The facets were read all the same; after the last one the file may be cut off.",
+    ),
+    ("W-stl-trailing", "More follows after the last facet. It was not read; the count may be too small."),
 ];
 
 /// The explanation of a code of this crate.

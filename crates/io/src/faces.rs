@@ -31,6 +31,11 @@ impl Faces {
         Ok(Self { triangles: Growing::with_room(memory, triangles)?, polygons: None })
     }
 
+    /// Makes room for as many triangles in all, as long as all faces are triangles.
+    pub(crate) fn reserve_triangles(&mut self, memory: &mut Memory<'_>, count: usize) -> Result<(), OverBudget> {
+        if self.polygons.is_none() { self.triangles.reserve(memory, count) } else { Ok(()) }
+    }
+
     /// Adds a triangle.
     #[inline]
     pub(crate) fn push_triangle(&mut self, memory: &mut Memory<'_>, corners: [u32; 3]) -> Result<(), ReadError> {

@@ -6,7 +6,7 @@ use std::io::Write;
 use shapeloom_core::Report;
 use shapeloom_shape::{Kind, Shape, UpAxis};
 
-use crate::{ReadContext, ReadError, ReadShape, WriteContext, WriteError, bpt, gltf, obj, ply};
+use crate::{ReadContext, ReadError, ReadShape, WriteContext, WriteError, bpt, gltf, obj, off, ply, stl};
 
 /// Reads a whole file. Errors need not name the input: [`read`](crate::read()) does.
 pub type ReadFn = fn(&[u8], &ReadContext) -> Result<ReadShape, ReadError>;
@@ -179,7 +179,8 @@ impl PartialEq for Format {
 }
 
 /// Every format, in the order in which content is tried.
-pub static FORMATS: &[Format] = &[gltf::GLB, gltf::GLTF, bpt::FORMAT, ply::FORMAT, obj::FORMAT];
+pub static FORMATS: &[Format] =
+    &[gltf::GLB, gltf::GLTF, bpt::FORMAT, ply::FORMAT, obj::FORMAT, off::FORMAT, stl::FORMAT];
 
 #[cfg(test)]
 mod tests {

@@ -37,6 +37,7 @@ mod format;
 mod gltf;
 mod memory;
 mod obj;
+mod off;
 mod options;
 mod placed;
 mod ply;
@@ -44,6 +45,7 @@ mod read;
 mod read_error;
 mod siblings;
 mod sink;
+mod stl;
 #[cfg(test)]
 mod test_data;
 mod write;

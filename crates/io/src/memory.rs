@@ -113,6 +113,16 @@ impl<T> Growing<T> {
         Ok(())
     }
 
+    /// Makes room for `count` elements in all, which are known to be there.
+    pub(crate) fn reserve(&mut self, memory: &mut Memory<'_>, count: usize) -> Result<(), OverBudget> {
+        let more = count.saturating_sub(self.0.capacity());
+        if more > 0 {
+            memory.take(more, size_of::<T>())?;
+            self.0.reserve_exact(count - self.0.len());
+        }
+        Ok(())
+    }
+
     #[cold]
     fn grow(&mut self, memory: &mut Memory<'_>, more: usize) -> Result<(), OverBudget> {
         make_room(memory, &mut self.0, more)

@@ -130,6 +130,14 @@ pub(crate) fn check_finite(
     }
 }
 
+/// How far a point moves, rounded up.
+pub(crate) fn moved(from: DVec3, to: DVec3) -> f64 {
+    let apart = (to - from).abs();
+    let largest = apart.max_element();
+    // In units of the largest component, as squares of tiny ones vanish; and the length itself is rounded.
+    if largest == 0.0 { 0.0 } else { (apart / largest).length() * largest * (1.0 + 8.0 * f64::EPSILON) }
+}
+
 /// The vertices of a geometry made of vertices.
 pub(crate) fn points_of(geometry: &Geometry) -> Option<&[DVec3]> {
     match geometry {

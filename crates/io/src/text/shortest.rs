@@ -11,7 +11,7 @@ pub fn shortest(value: f64) -> String {
 /// Appends the shortest text of a double. Infinite and not a number are the words `inf`, `-inf` and `nan`.
 pub fn push_number(out: &mut Vec<u8>, value: f64) {
     if value.is_finite() {
-        lay_out(out, zmij::Buffer::new().format_finite(value).as_bytes());
+        push_laid_out(out, value.abs(), zmij::Buffer::new().format_finite(value).as_bytes());
     } else {
         push_word(out, value);
     }
@@ -20,7 +20,7 @@ pub fn push_number(out: &mut Vec<u8>, value: f64) {
 /// Appends the shortest text that reads back to the same single precision number.
 pub fn push_single(out: &mut Vec<u8>, value: f32) {
     if value.is_finite() {
-        lay_out(out, zmij::Buffer::new().format_finite(value).as_bytes());
+        push_laid_out(out, f64::from(value.abs()), zmij::Buffer::new().format_finite(value).as_bytes());
     } else {
         push_word(out, f64::from(value));
     }
@@ -45,6 +45,18 @@ fn push_word(out: &mut Vec<u8>, value: f64) {
     } else {
         b"-inf"
     });
+}
+
+/// Appends the text of a number of that size, which has the shortest digits.
+#[inline]
+fn push_laid_out(out: &mut Vec<u8>, size: f64, text: &[u8]) {
+    // With digits after the point, and at most one zero between it and the first other digit, plain notation has at most
+    // one character beside the digits and the point, and an exponent at least two. Such numbers are plain in `text`.
+    if (0.01..1e7).contains(&size) && !text.ends_with(b".0") {
+        out.extend_from_slice(text);
+    } else {
+        lay_out(out, text);
+    }
 }
 
 /// Appends the number in plain notation or with an exponent, whichever is shorter. `text` has the shortest digits, in one
@@ -181,5 +193,20 @@ mod tests {
         push_count(&mut out, u64::MAX);
         push_integer(&mut out, -7);
         assert_eq!(out, b"18446744073709551615-7");
+    }
+
+    #[test]
+    fn the_short_way_writes_what_the_long_one_does() {
+        let mut bits = 1u64;
+        for _ in 0..200_000 {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let size = (bits >> 33) as f64 / 10f64.powi((bits >> 60) as i32 - 2);
+            for value in [size, -size.floor(), f64::from(size as f32), (size * 100.0).round() / 1e4] {
+                let (mut short, mut long) = (Vec::new(), Vec::new());
+                push_number(&mut short, value);
+                lay_out(&mut long, zmij::Buffer::new().format_finite(value).as_bytes());
+                assert_eq!(short, long, "{value}");
+            }
+        }
     }
 }
