@@ -1,10 +1,12 @@
 //! Mesh files of a million triangles, read and written.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde_json::{Map, json};
-use shapeloom_core::Exec;
+use shapeloom_core::{Convert, Exec};
 use shapeloom_io::{Format, ReadContext, WriteContext, detect, format_by_id, read, slurp_sized, write};
+use shapeloom_mesh::TriangulatePolygons;
 use shapeloom_shape::{Geometry, Shape};
 
 use crate::{Outcome, Setting, measure};
@@ -62,7 +64,13 @@ pub(crate) fn read_files(setting: &Setting) -> Result<Vec<Outcome>, String> {
 /// From the mesh to bytes in memory, in every format.
 pub(crate) fn write_files(setting: &Setting) -> Result<Vec<Outcome>, String> {
     let path = &inputs(setting)?[0];
-    let (shape, _, _) = load(path)?;
+    let (mut shape, _, _) = load(path)?;
+    for part in &mut shape.parts {
+        if let Geometry::PolyMesh(mesh) = &*part.geometry {
+            let triangles = TriangulatePolygons::new().convert(mesh).map_err(|error| error.to_string())?.value;
+            part.geometry = Arc::new(triangles.into());
+        }
+    }
     let one = |id: &str| {
         let format = format_by_id(id).map_err(|error| error.to_string())?;
         let context = WriteContext { exec: Exec::default(), ..WriteContext::default() };

@@ -99,6 +99,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-obj-row", "A vertex, normal or texture coordinate has too few or too many numbers."),
     ("E-obj-truncated", "The file ends within a free-form curve or surface."),
     (
+        "E-off-claim",
+        "The counts of an OFF file, or the number of corners of a face, are more than the bytes that follow can hold. The file was cut off, or a number is wrong.",
+    ),
+    (
         "E-off-color",
         "A colour is three or four numbers, fractions from 0 or whole numbers from 0 to 255; one whole number is an index into a colour map.",
     ),
@@ -255,6 +259,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-obj-statement", "A line begins with a word that OBJ does not have."),
     ("W-obj-texture", "A texture that a material names is not beside the file. Its name was kept."),
     ("W-obj-weight", "A vertex has the weight 0. Weights mean nothing for polygons; they are kept as a column."),
+    (
+        "W-off-color",
+        "Something about the colours was guessed: what whole numbers mean, the colour of a face that has none among others that have one, or that columns are a colour though the keyword does not say so.",
+    ),
     (
         "W-off-degenerate",
         "A face has fewer than three corners and was left out, or names a vertex twice or has no area and was kept.",

@@ -82,6 +82,24 @@ fn where_the_text_is_cut_does_not_matter() {
         let findings = |read: &ReadShape| -> Vec<_> { read.findings.iter().cloned().collect() };
         assert_eq!(findings(&read), findings(&whole), "{size}");
     }
+    // Faces that are passed over leave nothing behind; vertices that nothing uses stay with their object; two graphs.
+    let second = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf -1/-1/-1 -2/-1/-1\nf 1//1 2//1 3//1\no b\nv 9 9 9\nv 8 8 8\n\
+        v 7 7 7\nv 6 6 6\nf 4 5 6\nf -1\nl 1 2\nl 3 4\no c\nl 2 3\nl 4 1\n";
+    let whole = read_cut(second.as_bytes(), usize::MAX, &context).unwrap();
+    let counts: Vec<usize> = whole
+        .shape
+        .parts
+        .iter()
+        .map(|part| match &*part.geometry {
+            Geometry::TriMesh(mesh) => mesh.positions().len(),
+            Geometry::GeometricGraph(graph) => 10 * graph.positions().len() + graph.edges().len(),
+            other => panic!("{}", other.kind()),
+        })
+        .collect();
+    assert_eq!(counts, [3, 4, 42, 42]);
+    for size in 1..150 {
+        assert_eq!(read_cut(second.as_bytes(), size, &context).unwrap().shape, whole.shape, "{size}");
+    }
     for broken in [
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n",
         "v 0 0 0\nf -1 -1 -2\nv 1 0 0\n",

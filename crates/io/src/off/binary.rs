@@ -117,7 +117,7 @@ impl Bytes<'_> {
             && !context.options.drop_non_finite
         {
             let fault = Fault::new("E-off-finite", place, odd.to_string(), "finite numbers").within(within());
-            return Err(fault.advice("repair the file, or leave out what is not finite").into());
+            return Err(fault.advice(crate::audit::DROP_ADVICE).into());
         }
         let mut position = [0.0; 3];
         position[..layout.dimension].copy_from_slice(&numbers[..layout.dimension]);

@@ -194,7 +194,10 @@ impl<'a> Reader<'a> {
         let point = position / weight;
         if !point.is_finite() && !self.rows.context.options.drop_non_finite {
             let found = format!("the weight {weight}, by which the position is not finite");
-            return Err(Fault::new("E-off-finite", place, found, "a finite position").within(within()).into());
+            return Err(Fault::new("E-off-finite", place, found, "a finite position")
+                .within(within())
+                .advice(crate::audit::DROP_ADVICE)
+                .into());
         }
         Ok(point)
     }
@@ -228,7 +231,7 @@ impl<'a> Reader<'a> {
             return Ok(f64::NAN);
         }
         let error = Fault::new("E-off-finite", place, found, "a finite number of at most 1.8e308").within(vertex);
-        Err(error.advice("repair the file, or leave out what is not finite").into())
+        Err(error.advice(crate::audit::DROP_ADVICE).into())
     }
 
     /// A row that stops before it is complete.

@@ -308,7 +308,7 @@ impl Reader<'_> {
             return Ok(f64::NAN);
         }
         let error = Fault::new("E-stl-finite", place, found, "a finite number of at most 1.8e308");
-        Err(error.advice("repair the file, or leave out what is not finite").into())
+        Err(error.advice(crate::audit::DROP_ADVICE).into())
     }
 
     /// Goes to the next word; false at the end of the piece.

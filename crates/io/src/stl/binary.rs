@@ -195,7 +195,7 @@ fn not_finite(points: &[DVec3], start: usize) -> Box<Fault> {
         "finite numbers",
     )
     .within(format!("facet {}, corner {}", (start - HEADER) / FACET + facet, corner % 3))
-    .advice("repair the file, or leave out what is not finite")
+    .advice(crate::audit::DROP_ADVICE)
 }
 
 #[cold]

@@ -292,6 +292,8 @@ mod tests {
         assert_eq!(scan.word(), b"v");
         assert_eq!((scan.number(), scan.number(), scan.count()), (Ok(1.5), Ok(-20.0), Ok(7)));
         assert!(scan.at_line_end() && scan.next_line());
+        // One end of line, not the half of one.
+        assert_eq!((scan.offset(), scan.peek()), (15, Some(b'\r')));
         assert!(scan.skip_empty_lines());
         assert_eq!(scan.word(), b"last");
         assert_eq!(scan.count(), Err(CountFault::Overflow));
