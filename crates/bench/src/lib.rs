@@ -110,12 +110,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Read => files::read_files(&setting),
         Task::Write => files::write_files(&setting),
     };
-    let outcome = match threads {
-        None => work(),
-        Some(count) => match rayon::ThreadPoolBuilder::new().num_threads(usize::from(count)).build() {
-            Ok(pool) => pool.install(work),
-            Err(error) => Err(format!("{count} threads cannot be started: {error}")),
-        },
+    // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
+    let threads = threads.map_or_else(rayon::current_num_threads, usize::from);
+    let outcome = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(work),
+        Err(error) => Err(format!("{threads} threads cannot be started: {error}")),
     };
     let outcome = outcome.and_then(|outcomes| match against {
         None => Ok((outcomes, None)),
@@ -137,7 +136,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
                     "task": task.name(),
                     "input": input,
                     "runs": runs,
-                    "threads": threads.map_or_else(rayon::current_num_threads, usize::from),
+                    "threads": threads,
                     "wall_s": times.wall,
                     "cpu_s": times.cpu,
                 });

@@ -135,6 +135,7 @@ impl Faces {
     }
 
     /// The corners of a face.
+    #[cfg(test)]
     pub(crate) fn face(&self, face: usize) -> &[u32] {
         &self.corners()[self.range(face)]
     }

@@ -87,7 +87,7 @@ impl<'a> Primitives<'a, '_> {
             let byte = accessor.byte(element).unwrap_or(0);
             let found = format!("{} as element {element}, at byte {byte} of its buffer", positions[element]);
             let mut fault = Fault::new("E-gltf-finite", accessor.place(element), found, "finite coordinates");
-            fault = fault.within(accessor.path.clone()).advice("repair the file, or drop what is not finite");
+            fault = fault.within(accessor.path.clone()).advice(crate::audit::DROP_ADVICE);
             return Err(fault.into());
         }
         Ok(positions)
