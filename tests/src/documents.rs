@@ -20,14 +20,15 @@ pub fn check(path: &str, wanted: &str) {
 fn formats_are_documented_from_their_table() {
     let mut page = String::from(
         "# File formats\n\nMade from the table in `crates/io` by the tests; `shapeloom formats --json` prints the same.\n\n\
-         | id | name | extensions | reads | writes | positions | up | kinds | keeps |\n|---|---|---|---|---|---|---|---|---|\n",
+         | id | name | extensions | reads | writes | positions | up | kinds | keeps | options |\n|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for format in FORMATS {
         let kinds: Vec<&str> = format.kinds.iter().map(|kind| kind.name()).collect();
         let keeps: Vec<&str> = format.keeps.iter().map(|keeps| keeps.name()).collect();
+        let options: Vec<&str> = format.read_options.iter().chain(format.write_options).copied().collect();
         let _ = writeln!(
             page,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
             format.id,
             format.name,
             format.extensions.join(" "),
@@ -37,6 +38,7 @@ fn formats_are_documented_from_their_table() {
             format.up.map_or("-", |up| up.name()),
             kinds.join(" "),
             keeps.join(", "),
+            if options.is_empty() { "-".to_owned() } else { options.join(", ") },
         );
     }
     page += "\n";
