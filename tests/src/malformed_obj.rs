@@ -50,7 +50,7 @@ fn each_defect_is_told_with_its_line() {
         assert_eq!(refused(&input), (code, Place::line(line)), "{}", String::from_utf8_lossy(&input));
     }
     for (input, code, line) in [
-        (with("f 1 2\nf 1 2 3\n"), "W-obj-degenerate", 5),
+        (with("f 1 2\nf 1 2 3\n"), "W-obj-skipped", 5),
         (with("f 1 2 3\nf 1 2 2\n"), "W-obj-degenerate", 6),
         (with("call x.obj\nf 1 2 3\n"), "W-obj-ignored", 5),
         (with("frobnicate 1 2 3\nf 1 2 3\n"), "W-obj-statement", 5),
@@ -124,7 +124,7 @@ fn the_collection_comes_out_as_expected() {
             "IndexOutOfRange" => &["E-obj-index"],
             "InvalidNumber" => &["E-obj-number"],
             "UnexpectedToken" => &["E-obj-row"],
-            "DegenerateFace" => &["W-obj-degenerate"],
+            "DegenerateFace" => &["W-obj-degenerate", "W-obj-skipped"],
             "ZeroWeight" => &["W-obj-weight"],
             "IgnoredStatement" => &["W-obj-ignored"],
             "MaterialNotLoaded" => &["W-obj-library"],

@@ -1,5 +1,6 @@
 //! What readers look for in every mesh: faces without area, positions that are not finite.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
@@ -107,18 +108,28 @@ fn on_one_line(points: &[DVec3]) -> bool {
 }
 
 /// Takes out every vertex whose position is not finite, with the faces and segments that use it.
-pub(crate) fn drop_non_finite(shape: &mut Shape, findings: &mut Findings) -> Result<(), ReadError> {
-    for index in 0..shape.parts.len() {
-        let geometry = Arc::clone(&shape.parts[index].geometry);
-        let Some((kept, vertices, faces)) = finite_part(&geometry)? else { continue };
-        let kept = Arc::new(kept);
-        // Instances stay instances.
-        for part in shape.parts.iter_mut().filter(|part| Arc::ptr_eq(&part.geometry, &geometry)) {
-            part.geometry = Arc::clone(&kept);
+pub(crate) fn drop_non_finite(shape: &mut Shape, exec: &Exec, findings: &mut Findings) -> Result<(), ReadError> {
+    // Instances stay instances.
+    let mut known: HashMap<*const Geometry, Option<Arc<Geometry>>> = HashMap::new();
+    let mut old = Vec::new();
+    for (index, part) in shape.parts.iter_mut().enumerate() {
+        exec.check()?;
+        let key = Arc::as_ptr(&part.geometry);
+        if !known.contains_key(&key) {
+            // The copy of what is kept, and the lists that say what that is.
+            let _memory = exec.reserve(2 * part.geometry.memory_bytes() as u64)?;
+            let kept = finite_part(&part.geometry)?;
+            if let Some((_, vertices, faces)) = &kept {
+                let message =
+                    format!("left out {vertices} vertices that are not finite, and {faces} faces or segments of them");
+                findings.push("W-read-dropped", Severity::Warning, Place::element("part", index as u64), message);
+            }
+            known.insert(key, kept.map(|(kept, ..)| Arc::new(kept)));
         }
-        let message =
-            format!("left out {vertices} vertices that are not finite, and {faces} faces or segments of them");
-        findings.push("W-read-dropped", Severity::Warning, Place::element("part", index as u64), message);
+        if let Some(Some(kept)) = known.get(&key) {
+            // Held until the end, so that no other geometry comes to lie at its address.
+            old.push(std::mem::replace(&mut part.geometry, Arc::clone(kept)));
+        }
     }
     Ok(())
 }
@@ -248,7 +259,7 @@ mod tests {
         let part = Part::new(mesh);
         let mut shape = Shape { parts: vec![part.clone(), part], ..Shape::default() };
         let mut findings = Findings::default();
-        drop_non_finite(&mut shape, &mut findings).unwrap();
+        drop_non_finite(&mut shape, &Exec::default(), &mut findings).unwrap();
         assert!(Arc::ptr_eq(&shape.parts[0].geometry, &shape.parts[1].geometry));
         let Geometry::PolyMesh(mesh) = &*shape.parts[0].geometry else { panic!("polygons") };
         assert_eq!((mesh.face_count(), mesh.face(0)), (1, &[0, 1, 3, 2][..]));
@@ -260,7 +271,7 @@ mod tests {
         // A line without its second point is a point and a segment.
         let line = Polyline::new(vec![DVec3::ZERO, DVec3::NAN, DVec3::X, DVec3::Y], false);
         let mut shape = Shape::new(Part::new(line));
-        drop_non_finite(&mut shape, &mut findings).unwrap();
+        drop_non_finite(&mut shape, &Exec::default(), &mut findings).unwrap();
         let Geometry::GeometricGraph(graph) = &*shape.parts[0].geometry else { panic!("a graph") };
         assert_eq!((graph.positions().len(), graph.edges()), (3, &[[1, 2]][..]));
     }

@@ -172,17 +172,21 @@ pub(crate) fn edge_columns_of(geometry: &Geometry) -> Option<&Attributes> {
 
 /// Losses gathered so that each is said once, however many parts have it.
 #[derive(Default)]
-pub(crate) struct Losses(Vec<Loss>);
+pub(crate) struct Losses {
+    list: Vec<Loss>,
+    said: HashSet<(String, String)>,
+}
 
 impl Losses {
     pub(crate) fn from(losses: Vec<Loss>) -> Self {
-        Self(losses)
+        let said = losses.iter().map(|loss| (loss.what.clone(), loss.why.clone())).collect();
+        Self { list: losses, said }
     }
 
     pub(crate) fn push(&mut self, what: impl Into<String>, why: impl Into<String>) {
         let loss = Loss::new(what, why);
-        if !self.0.contains(&loss) {
-            self.0.push(loss);
+        if self.said.insert((loss.what.clone(), loss.why.clone())) {
+            self.list.push(loss);
         }
     }
 
@@ -191,7 +195,7 @@ impl Losses {
     }
 
     pub(crate) fn into_vec(self) -> Vec<Loss> {
-        self.0
+        self.list
     }
 }
 

@@ -71,7 +71,7 @@ pub fn read(input: &[u8], format: &Format, context: &ReadContext) -> Result<Read
         context.exec.check()?;
         let mut found = reader(input, context)?;
         if context.options.drop_non_finite {
-            audit::drop_non_finite(&mut found.shape, &mut found.findings)?;
+            audit::drop_non_finite(&mut found.shape, &context.exec, &mut found.findings)?;
         }
         Ok(found)
     });

@@ -138,11 +138,42 @@ impl Diagnostic for ReadError {
 
     fn advice(&self) -> Option<String> {
         match self {
-            Self::Input(fault) => fault.advice.clone(),
+            Self::Input(fault) => fault.advice.clone().or_else(|| usual_advice(fault.code).map(str::to_owned)),
             Self::Stop(stop) => stop.advice(),
             Self::OverBudget(_) => Some("raise the memory limit, or read a smaller file".into()),
         }
     }
+}
+
+/// What to do about an error of which nothing more is known than its kind: the last word of its code.
+fn usual_advice(code: &str) -> Option<&'static str> {
+    Some(match code.rsplit('-').next()? {
+        "truncated" | "length" | "buffer" => {
+            "get a complete copy of the file: this one was cut off, or its header is wrong"
+        }
+        "claim" | "bounds" | "chunk" => {
+            "get a complete copy of the file, or mend the number that promises more than it holds"
+        }
+        "count" | "degree" => "mend this number; it must be a whole number that agrees with what follows",
+        "number" => "write decimal numbers with a point, such as -1.5e3, apart by blanks",
+        "finite" => crate::audit::DROP_ADVICE,
+        "index" | "reference" => "mend the index, or remove the element that has it",
+        "row" => "make the row complete, one row a line, or mend what the header says of it",
+        "header" | "format" | "type" | "duplicate" | "property" => {
+            "mend the header; `shapeloom explain` says what it must have"
+        }
+        "magic" => "name the right format if the file is another one than its name says",
+        "version" | "extension" | "feature" | "dimension" | "mode" => {
+            "export the file anew without it, or convert it with another program"
+        }
+        "limit" | "elements" | "line" => "cut the file into parts, or raise the limit if it is trusted",
+        "json" => "mend the text at this place: it is no JSON",
+        "missing" | "uri" | "path" => "put the file where it is looked for, or export with everything in one file",
+        "cycle" | "parents" | "depth" | "sparse" | "order" => "export the file anew: it breaks a rule of its format",
+        "color" | "weight" | "mesh" | "patch" => "mend the value in the file, or export it anew",
+        "io" => "check that the input can be read",
+        _ => return None,
+    })
 }
 
 impl From<Box<Fault>> for ReadError {
@@ -166,6 +197,17 @@ impl From<OverBudget> for ReadError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Whatever the format, an error says what to do.
+    #[test]
+    fn every_error_of_reading_has_advice() {
+        for (code, _) in crate::EXPLANATIONS.iter().filter(|(code, _)| code.starts_with("E-")) {
+            if !code.starts_with("E-write") && !code.starts_with("E-format") {
+                let own = ["E-text-encoding", "E-obj-freeform", "E-read-format", "E-read-size"].contains(code);
+                assert!(own || usual_advice(code).is_some(), "{code}");
+            }
+        }
+    }
 
     #[test]
     fn errors_read_like_sentences() {

@@ -61,6 +61,14 @@ pub(super) fn assemble(
     }
     unused(&whole, &mut losses);
 
+    if whole.faces.is_empty() && (!whole.lines.is_empty() || !whole.points.is_empty()) {
+        let mut used = vec![false; whole.positions.len()];
+        whole.lines.iter().chain(&whole.points).for_each(|&vertex| used[vertex as usize] = true);
+        let unused = used.iter().filter(|used| !**used).count();
+        if unused > 0 {
+            losses.push(Loss::new(format!("{unused} vertices"), "no line and no point names them"));
+        }
+    }
     let mut sides = Sides { whole: &whole, columns: &columns, parts: Vec::new() };
     sides.read(&statements, memory)?;
     let side_parts = sides.parts;

@@ -3,13 +3,16 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use shapeloom_core::{Findings, Severity};
+use shapeloom_core::{Findings, Place, Severity};
 
 use super::read::Whole;
 use super::statements::EventKind;
 use crate::ReadError;
 use crate::memory::Memory;
 use crate::text::{Scanner, parse_count, quoted};
+
+/// Names are repeated for every part that has them: longer ones would take memory out of proportion to the file.
+const MOST_NAME: usize = 1024;
 
 /// Names that occur, each once, the first one empty: what holds before any statement.
 pub(super) struct Names {
@@ -32,9 +35,6 @@ impl Names {
                 name.push(' ');
             }
             name.push_str(&String::from_utf8_lossy(word));
-        }
-        if name == super::NO_MATERIAL {
-            name.clear();
         }
         if let Some(&id) = self.known.get(&name) {
             return Ok(id);
@@ -97,7 +97,12 @@ impl Statements {
         let mut labels = Labels::default();
         let mut from = [0usize; 4];
         for event in &whole.events {
-            let words = &whole.text[event.start..event.end];
+            let mut words = &whole.text[event.start..event.end];
+            if words.len() > MOST_NAME && event.kind != EventKind::Library {
+                let message = format!("a name of {} bytes was cut after {MOST_NAME}", words.len());
+                findings.push("W-obj-name", Severity::Warning, Place::Byte(event.start as u64), message);
+                words = &words[..MOST_NAME];
+            }
             let mut next = labels;
             match event.kind {
                 EventKind::Object => {
@@ -107,7 +112,8 @@ impl Statements {
                 }
                 EventKind::Group => next.group = all.groups.id(words, memory)?,
                 EventKind::Material => {
-                    next.material = all.materials.id(words, memory)?;
+                    let none = words == super::NO_MATERIAL.as_bytes();
+                    next.material = if none { 0 } else { all.materials.id(words, memory)? };
                     if all.material_places.len() < all.materials.list.len() {
                         all.material_places.push(event.start);
                     }

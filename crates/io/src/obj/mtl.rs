@@ -114,7 +114,7 @@ impl Library {
     /// Reads a library; what is wrong in it is a finding at the statement that named it.
     fn read(&mut self, file: &str, bytes: &[u8], place: &Place, context: &ReadContext, findings: &mut Findings) {
         let mut odd = |line: u64, what: String| {
-            let message = format!("{file}: line {line}: {what}; it was passed over");
+            let message = format!("{file}: line {line}: {what}");
             findings.push("W-obj-library", Severity::Warning, place.clone(), message);
         };
         let Ok(text) = plain_text(bytes, &context.limits) else {
@@ -136,9 +136,12 @@ impl Library {
                     self.known.entry(name.clone()).or_insert(self.materials.len());
                     self.materials.push(Some(Material { name, ..Material::default() }));
                 }
-                (word, None) => odd(line, format!("found {} before any newmtl", quoted(word))),
+                (word, None) => odd(line, format!("found {} before any newmtl, which was passed over", quoted(word))),
                 (b"Kd", Some(material)) => match [scan.number(), scan.number(), scan.number()] {
                     [Ok(r), Ok(g), Ok(b)] => {
+                        if [r, g, b].iter().any(|number| !(0.0..=1.0).contains(number)) {
+                            odd(line, format!("found Kd {r} {g} {b}, beyond 0 to 1: the nearer ends were taken"));
+                        }
                         for (slot, number) in material.base_color.iter_mut().zip([r, g, b]) {
                             *slot = (number as f32).clamp(0.0, 1.0);
                         }
@@ -147,10 +150,16 @@ impl Library {
                     [Ok(grey), _, _] if scan.at_line_end_or_comment() => {
                         material.base_color[..3].fill((grey as f32).clamp(0.0, 1.0));
                     }
-                    _ => odd(line, "found Kd without three numbers".into()),
+                    _ => odd(line, "found Kd without three numbers, which was passed over".into()),
                 },
                 (b"d" | b"Tr" | b"Pr" | b"Pm", Some(material)) => match scan.number() {
                     Ok(number) => {
+                        if !(0.0..=1.0).contains(&number) {
+                            odd(
+                                line,
+                                format!("found {} {number}, beyond 0 to 1: the nearer end was taken", quoted(word)),
+                            );
+                        }
                         let number = (number as f32).clamp(0.0, 1.0);
                         match word {
                             b"d" => material.base_color[3] = number,
@@ -159,7 +168,7 @@ impl Library {
                             _ => material.metallic = number,
                         }
                     }
-                    Err(_) => odd(line, format!("found {} without a number", quoted(word))),
+                    Err(_) => odd(line, format!("found {} without a number, which was passed over", quoted(word))),
                 },
                 (b"map_Kd", Some(material)) => material.texture = texture(&mut scan),
                 (word, Some(_)) => {
@@ -203,6 +212,12 @@ fn texture(scan: &mut Scanner<'_>) -> Option<String> {
     (!name.is_empty()).then_some(name)
 }
 
+/// The name of a texture, if a statement can hold it.
+pub(super) fn texture_name(name: &str) -> Option<&str> {
+    let plain = !name.is_empty() && !name.starts_with('-') && !name.chars().any(char::is_control);
+    (plain && name.trim() == name && !name.ends_with('\\')).then_some(name)
+}
+
 /// A library of these materials.
 pub(super) fn library(materials: &[Material]) -> String {
     let mut text = String::from("# written by shapeloom\n");
@@ -211,7 +226,7 @@ pub(super) fn library(materials: &[Material]) -> String {
         let (roughness, metallic) = (material.roughness, material.metallic);
         // Writing to a string does not fail.
         let _ = write!(text, "newmtl {}\nKd {r} {g} {b}\nd {a}\nPr {roughness}\nPm {metallic}\n", material.name);
-        if let Some(texture) = &material.texture {
+        if let Some(texture) = material.texture.as_deref().and_then(texture_name) {
             let _ = writeln!(text, "map_Kd {texture}");
         }
     }

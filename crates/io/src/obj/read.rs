@@ -19,14 +19,12 @@ use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
     let text = plain_text(input, &context.limits)?;
-    let _joined;
-    let text = match joined(text) {
-        Cow::Borrowed(text) => Cow::Borrowed(text),
-        Cow::Owned(text) => {
-            _joined = context.exec.reserve(text.len() as u64)?;
-            Cow::Owned(text)
-        }
+    // A copy is made where lines are continued.
+    let _copy = match memchr::memchr(b'\\', text) {
+        Some(_) => Some(context.exec.reserve(text.len() as u64)?),
+        None => None,
     };
+    let text = joined(text);
     let parts = pieces(&text, 0, &context.exec, never_joined);
     // Lines are counted in the text as it is in the file.
     read_pieces(&text, &parts, context).map_err(|error| match error {

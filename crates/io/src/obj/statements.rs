@@ -308,7 +308,7 @@ impl<'e> Piece<'e> {
         }
         if corners.len() < 3 {
             let message = format!("a face of {} was passed over", plural(corners.len(), "corner"));
-            self.findings.push("W-obj-degenerate", Severity::Warning, Place::Byte(start as u64), message);
+            self.findings.push("W-obj-skipped", Severity::Warning, Place::Byte(start as u64), message);
             self.relative.truncate(before.1);
             self.face_texcoords.values.truncate(texcoords_before.0);
             self.face_texcoords.relative.truncate(texcoords_before.1);
@@ -338,7 +338,7 @@ impl<'e> Piece<'e> {
         }
         if self.lines.values.len() - before.0 < 2 {
             let message = "a line of fewer than two vertices was passed over";
-            self.findings.push("W-obj-degenerate", Severity::Warning, Place::Byte(start as u64), message);
+            self.findings.push("W-obj-skipped", Severity::Warning, Place::Byte(start as u64), message);
             self.lines.values.truncate(before.0);
             self.lines.relative.truncate(before.1);
             return Ok(());

@@ -66,11 +66,19 @@ fn library(
     };
     let Some(name) = name else {
         for material in &shape.materials {
-            let why = "an output that stands alone has no material library: only the name was written";
+            let why = match &context.siblings {
+                None => "an output that stands alone has no material library: only the name was written",
+                Some(_) => "no library can have a name made from the output's: only the name was written",
+            };
             losses.push(format!("material \"{}\"", material.name), why);
         }
         return None;
     };
+    for texture in shape.materials.iter().filter_map(|material| material.texture.as_deref()) {
+        if mtl::texture_name(texture).is_none() {
+            losses.push(format!("texture \"{}\"", texture.escape_debug()), "a line of MTL cannot hold its name");
+        }
+    }
     if shape.materials.iter().any(|material| material.double_sided) {
         losses.push("which materials show both sides", "MTL has no place for it");
     }
@@ -158,11 +166,14 @@ impl Writer<'_> {
         if name != part.name {
             losses.push(format!("part name \"{}\"", part.name.escape_debug()), format!("in the file it is \"{name}\""));
         }
-        match name {
-            "" if parts < 2 => Ok(()),
-            "" => self.sink.text(format_args!("o part_{index}\n")),
-            name => self.sink.text(format_args!("o {name}\n")),
-        }
+        let name = match name {
+            "" if parts < 2 => return Ok(()),
+            "" => format!("part_{index}"),
+            name => name.to_owned(),
+        };
+        self.sink.text(format_args!("o {name}\n"))?;
+        self.state.object = clean(&name);
+        Ok(())
     }
 
     fn part(
@@ -179,8 +190,13 @@ impl Writer<'_> {
             }
         }
         let labels = self.labels(part, geometry);
-        if labels.object.is_none() {
-            self.object(index, part, parts, losses)?;
+        match labels.object {
+            None => self.object(index, part, parts, losses)?,
+            Some(_) if !part.name.is_empty() => {
+                losses
+                    .push(format!("part name \"{}\"", part.name.escape_debug()), "its faces have objects of their own");
+            }
+            Some(_) => {}
         }
         self.vertices(geometry)?;
         match geometry {
@@ -202,6 +218,11 @@ impl Writer<'_> {
             }
             Geometry::GeometricGraph(graph) => {
                 self.say(&labels, 0)?;
+                let alone = graph.degrees().iter().filter(|&&degree| degree == 0).count();
+                if alone > 0 {
+                    losses
+                        .push(format!("{alone} vertices without edges"), "OBJ has them, but nothing there names them");
+                }
                 for edge in graph.edges() {
                     let block = self.sink.block();
                     block.push(b'l');

@@ -13,4 +13,5 @@ pub use numbers::{CountFault, NumberFault, parse_count, parse_number};
 pub(crate) use pieces::cut;
 pub(crate) use pieces::{never_joined, pieces};
 pub(crate) use scanner::{Scanner, end_place, in_lines, is_blank, line_at, line_place, plain_text};
-pub use shortest::{push_count, push_integer, push_number, push_single, shortest};
+pub use shortest::shortest;
+pub(crate) use shortest::{push_count, push_integer, push_number, push_single};

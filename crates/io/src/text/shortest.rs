@@ -9,7 +9,7 @@ pub fn shortest(value: f64) -> String {
 }
 
 /// Appends the shortest text of a double. Infinite and not a number are the words `inf`, `-inf` and `nan`.
-pub fn push_number(out: &mut Vec<u8>, value: f64) {
+pub(crate) fn push_number(out: &mut Vec<u8>, value: f64) {
     if value.is_finite() {
         push_laid_out(out, value.abs(), zmij::Buffer::new().format_finite(value).as_bytes());
     } else {
@@ -18,7 +18,7 @@ pub fn push_number(out: &mut Vec<u8>, value: f64) {
 }
 
 /// Appends the shortest text that reads back to the same single precision number.
-pub fn push_single(out: &mut Vec<u8>, value: f32) {
+pub(crate) fn push_single(out: &mut Vec<u8>, value: f32) {
     if value.is_finite() {
         push_laid_out(out, f64::from(value.abs()), zmij::Buffer::new().format_finite(value).as_bytes());
     } else {
@@ -27,12 +27,12 @@ pub fn push_single(out: &mut Vec<u8>, value: f32) {
 }
 
 /// Appends a whole number.
-pub fn push_count(out: &mut Vec<u8>, value: u64) {
+pub(crate) fn push_count(out: &mut Vec<u8>, value: u64) {
     out.extend_from_slice(itoa::Buffer::new().format(value).as_bytes());
 }
 
 /// Appends a whole number that may be negative.
-pub fn push_integer(out: &mut Vec<u8>, value: i64) {
+pub(crate) fn push_integer(out: &mut Vec<u8>, value: i64) {
     out.extend_from_slice(itoa::Buffer::new().format(value).as_bytes());
 }
 
