@@ -90,7 +90,11 @@ impl Case {
             Some((main, within)) => (main, Some(within.trim_end_matches(')'))),
             None => (self.location.as_str(), None),
         };
-        let exact = place.to_string() == main || message.contains(main) || main == "-" || main == "last byte";
+        // "line 1" is not in "line 12".
+        let said = message
+            .match_indices(main)
+            .any(|(at, found)| !message[at + found.len()..].starts_with(|next: char| next.is_ascii_digit()));
+        let exact = place.to_string() == main || said || main == "-" || main == "last byte";
         exact && within.is_none_or(|within| message.contains(within))
     }
 }
@@ -171,8 +175,9 @@ impl Facts {
         assert_eq!((vertices, faces), (self.vertices, self.faces), "{name}");
         let close = |found: f64, known: f64| (found - known).abs() <= 1e-5 * known.abs().max(1e-12);
         if let Some(known) = self.area {
-            // Concave polygons have less area than their fans.
-            assert!(close(area, known) || (area < known && faces < 100), "{name}: area {area}, known {known}");
+            // The facts are of fans, which have more area than a concave polygon.
+            let concave = ["concave_polygon.obj", "L.off"].iter().any(|concave| name.ends_with(concave));
+            assert!(close(area, known) || (concave && area < known), "{name}: area {area}, known {known}");
         }
         // Known for closed meshes only, and there whatever the centre.
         if let Some(known) = self.volume {

@@ -116,6 +116,41 @@ fn where_the_text_is_cut_does_not_matter() {
     }
 }
 
+/// Lines dealt out anew, left out and repeated: the same result or the same error for every size of piece.
+#[test]
+fn shuffled_statements_are_read_alike_wherever_they_are_cut() {
+    let context = ReadContext::named("x.obj");
+    let lines: Vec<&str> = MIXED.split_inclusive(['\n', '\r']).collect();
+    let mut state = 1u64;
+    let mut next = |bound: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % bound
+    };
+    let mut accepted = 0;
+    for _ in 0..1500 {
+        let mut text = lines[..18].concat();
+        for _ in 0..next(40) {
+            text += lines[next(lines.len())];
+        }
+        let whole = read_cut(text.as_bytes(), usize::MAX, &context);
+        accepted += usize::from(whole.is_ok());
+        for size in [1, 7, 30, 80] {
+            match (&whole, read_cut(text.as_bytes(), size, &context)) {
+                (Ok(whole), Ok(cut)) => {
+                    assert_eq!(
+                        (&cut.shape, &cut.losses, &cut.findings),
+                        (&whole.shape, &whole.losses, &whole.findings),
+                        "{text}"
+                    );
+                }
+                (Err(whole), Err(cut)) => assert_eq!(*whole, cut, "{text}"),
+                (whole, cut) => panic!("{size}: {whole:?} {cut:?} {text}"),
+            }
+        }
+    }
+    assert!((100..1400).contains(&accepted), "{accepted}");
+}
+
 #[test]
 fn indices_name_what_exists() {
     let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\n";
