@@ -23,6 +23,7 @@ mod malformed_obj;
 mod malformed_off;
 mod malformed_ply;
 mod malformed_stl;
+mod memory;
 mod mutations;
 mod oracles;
 mod peer_gltf;

@@ -116,3 +116,41 @@ fn material_libraries_are_written_and_read_beside_the_file() {
     assert!(again.code == 6 && again.err.contains("b.mtl"), "{}", again.err);
     assert!(!std::path::Path::new(&path("b.obj")).exists());
 }
+
+/// Loose edges and points beside faces do not keep the faces from formats that have only those.
+#[test]
+fn loose_edges_are_left_out_where_they_have_no_place() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nl 1 4\np 4\n";
+    let outcome = run_on(text.as_bytes(), &["convert", "-", "-", "--from", "obj", "--to", "stl"]);
+    assert_eq!((outcome.code, outcome.out.len()), (0, 134), "{}", outcome.err);
+    assert!(
+        outcome.err.contains("lost: part 1, a polyline") && outcome.err.contains("part 2, a point-cloud"),
+        "{}",
+        outcome.err
+    );
+    let edges = "v 0 0 0\nv 1 0 0\nl 1 2\n";
+    assert_eq!(run_on(edges.as_bytes(), &["convert", "-", "-", "--from", "obj", "--to", "stl"]).code, 4);
+}
+
+/// Links that leave the folder, and pipes, which would be waited for, are not opened.
+#[cfg(unix)]
+#[test]
+fn files_beside_the_input_are_regular_and_inside() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::create_dir(path("inside")).expect("a folder");
+    std::fs::write(path("secret.mtl"), "newmtl secret\n").expect("a file");
+    std::os::unix::fs::symlink(path("secret.mtl"), path("inside/link.mtl")).expect("a link");
+    std::os::unix::fs::symlink("/dev/zero", path("inside/zero.mtl")).expect("a link");
+    let pipe = std::process::Command::new("mkfifo").arg(path("inside/pipe.mtl")).status();
+    let mut names = vec!["link.mtl", "zero.mtl"];
+    if pipe.is_ok_and(|status| status.success()) {
+        names.push("pipe.mtl");
+    }
+    for name in names {
+        std::fs::write(path("inside/a.obj"), format!("mtllib {name}\nv 0 0 0\n")).expect("a file");
+        let outcome = run(&["info", &path("inside/a.obj"), "--json"]);
+        assert!(outcome.code == 0 && outcome.err.contains("W-obj-library"), "{name}: {}", outcome.err);
+        assert!(!String::from_utf8_lossy(&outcome.out).contains("secret\""), "{name}");
+    }
+}

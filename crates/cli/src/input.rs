@@ -85,7 +85,17 @@ impl Siblings for Folder {
             ErrorKind::NotFound => SiblingError::Missing,
             _ => SiblingError::Io(error.to_string()),
         };
-        let file = File::open(self.0.join(name.as_str())).map_err(unreadable)?;
+        let folder = if self.0.as_os_str().is_empty() { Path::new(".") } else { &self.0 };
+        // Where links lead, and to what: a pipe would be waited for, a device read without end.
+        let path = folder.join(name.as_str()).canonicalize().map_err(unreadable)?;
+        if !path.starts_with(folder.canonicalize().map_err(unreadable)?) {
+            return Err(SiblingError::Forbidden);
+        }
+        let data = path.metadata().map_err(unreadable)?;
+        if !data.is_file() {
+            return Err(SiblingError::Io("it is no regular file".into()));
+        }
+        let file = File::open(&path).map_err(unreadable)?;
         let mut bytes = Vec::new();
         file.take(max_bytes).read_to_end(&mut bytes).map_err(unreadable)?;
         Ok(bytes)

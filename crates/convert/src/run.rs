@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use shapeloom_core::{Affine, AffineClass, ConvertError, Deviation, Exec, OptionValue, Report};
+use shapeloom_core::{Affine, AffineClass, ConvertError, Deviation, Exec, Loss, OptionValue, Report};
 use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use crate::{Plan, PlanError, Request, Wish, plan};
@@ -53,21 +53,37 @@ pub struct Conversion {
     pub steps: Vec<Step>,
     /// The largest deviation of a part, in the units of the shape.
     pub deviation: Deviation,
+    /// Parts that were left out, each with why.
+    pub losses: Vec<Loss>,
     /// How long each step took.
     pub timings: Timings,
 }
 
-/// Converts every part of a shape to the kinds wished for. A geometry that several parts share is converted once.
+/// Converts every part of a shape to the kinds wished for. A geometry that several parts share is converted once. A part
+/// of a kind from which nothing leads there, such as loose edges beside faces, is left out and named in the losses; if
+/// that is so for all parts it is an error.
 ///
 /// The tolerance holds for the shape: a part that is placed larger is converted finer. Each lossy step on a way gets an
 /// equal share of it.
 ///
 /// # Errors
-/// No way for some part, an option that no step has, or a step's own error.
+/// No way for any part, an option that no step has, or a step's own error.
 pub fn convert_shape(shape: &Shape, job: &Job, exec: &Exec) -> Result<Conversion, ConvertError> {
     let mut groups: Vec<Group> = Vec::new();
     let mut known: HashMap<*const Geometry, usize> = HashMap::new();
+    let mut losses = Vec::new();
+    let mut left_out = vec![false; shape.parts.len()];
+    let anywhere = Wish::to(job.wish.targets.clone());
+    let reaches = |part: &Part| plan(part.geometry.kind(), &anywhere).is_ok();
+    let some_arrive = shape.parts.iter().any(reaches);
     for (index, part) in shape.parts.iter().enumerate() {
+        if some_arrive && !reaches(part) {
+            let targets: Vec<&str> = job.wish.targets.iter().map(|kind| kind.name()).collect();
+            let what = format!("part {index}, a {}", part.geometry.kind());
+            losses.push(Loss::new(what, format!("nothing leads from it to {}: it was left out", targets.join(" or "))));
+            left_out[index] = true;
+            continue;
+        }
         let group = *known.entry(Arc::as_ptr(&part.geometry)).or_insert(groups.len());
         if group == groups.len() {
             let plan = plan(part.geometry.kind(), &job.wish)?;
@@ -82,6 +98,7 @@ pub fn convert_shape(shape: &Shape, job: &Job, exec: &Exec) -> Result<Conversion
         shape: Shape { parts: shape.parts.clone(), ..shape.clone() },
         steps: Vec::new(),
         deviation: Deviation::Exact,
+        losses,
         timings: Timings::default(),
     };
     let share = 1.0 / groups.len().max(1) as f64;
@@ -94,6 +111,8 @@ pub fn convert_shape(shape: &Shape, job: &Job, exec: &Exec) -> Result<Conversion
         }
         result.deviation = result.deviation.or(deviation);
     }
+    let mut kept = left_out.iter().map(|left_out| !left_out);
+    result.shape.parts.retain(|_| kept.next().unwrap_or(true));
     exec.progress(1.0);
     Ok(result)
 }
@@ -203,6 +222,7 @@ mod tests {
     use super::*;
     use shapeloom_core::glam::DVec3;
     use shapeloom_mesh::primitives::{Platonic, Solid};
+    use shapeloom_mesh::{PointCloud, PolyMesh};
     use shapeloom_parametric::{BezierPatch, BezierSurface};
 
     fn saddle() -> BezierSurface {
@@ -252,5 +272,19 @@ mod tests {
         let conversion = convert_shape(&shape, &keep, &Exec::default()).unwrap();
         assert_eq!((conversion.shape, conversion.deviation), (shape, Deviation::Exact));
         assert!(convert_shape(&Shape::default(), &job(&[]), &Exec::default()).unwrap().steps.is_empty());
+    }
+
+    #[test]
+    fn parts_that_lead_nowhere_are_left_out_beside_others() {
+        let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+        let cloud = Part::new(PointCloud::new(points.clone()));
+        let mesh = Part::new(PolyMesh::from_faces(points, &[[0, 1, 2]]).unwrap()).named("mesh");
+        let job = Job { wish: Wish::to([Kind::TriMesh]), tolerance: 1.0, settings: Vec::new() };
+        let shape = Shape { parts: vec![cloud.clone(), mesh, cloud.clone()], ..Shape::default() };
+        let conversion = convert_shape(&shape, &job, &Exec::default()).unwrap();
+        assert_eq!((conversion.shape.parts.len(), conversion.shape.parts[0].name.as_str()), (1, "mesh"));
+        assert_eq!(conversion.losses.len(), 2);
+        assert!(conversion.losses[1].what.contains("part 2, a point-cloud"), "{:?}", conversion.losses);
+        assert!(convert_shape(&Shape::new(cloud), &job, &Exec::default()).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! What writers of formats without scenes share: parts put where they are, and the losses that the format's table entry
 //! implies.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
@@ -15,59 +15,58 @@ use crate::{Format, Keeps, WriteError};
 /// comments, and columns of lists and of edges, where the format does not keep them. A writer that says it keeps lists or
 /// edge columns names those that it does not.
 pub(crate) fn frame_losses(shape: &Shape, format: &Format) -> Vec<Loss> {
-    let mut losses = Vec::new();
+    let mut losses = Losses::default();
     let keeps = |what: Keeps| format.keeps.contains(&what);
     let name = format.name;
     if !keeps(Keeps::Parts) && shape.parts.len() > 1 {
         let count = shape.parts.len();
-        losses.push(Loss::new(format!("{count} separate parts"), format!("{name} holds one: they were put together")));
+        losses.push(format!("{count} separate parts"), format!("{name} holds one: they were put together"));
     }
     if !keeps(Keeps::Names) {
         for part in shape.parts.iter().filter(|part| !part.name.is_empty()) {
-            losses.push(Loss::new(format!("part name \"{}\"", part.name), format!("{name} has no place for it")));
+            losses.push(format!("part name \"{}\"", part.name), format!("{name} has no place for it"));
         }
     }
     if !keeps(Keeps::Instances) {
         let placed = shape.parts.iter().filter(|part| part.placement != Affine::IDENTITY).count();
         if placed > 0 {
             let why = format!("{name} has none: they were applied to the coordinates");
-            losses.push(Loss::new(format!("placements of {placed} parts"), why));
+            losses.push(format!("placements of {placed} parts"), why);
         }
         let mut seen = HashSet::new();
         let repeated = shape.parts.iter().filter(|part| !seen.insert(Arc::as_ptr(&part.geometry))).count();
         if repeated > 0 {
             let why = format!("{name} has none: each was written out");
-            losses.push(Loss::new(format!("{repeated} instances of shared geometries"), why));
+            losses.push(format!("{repeated} instances of shared geometries"), why);
         }
     }
     if !keeps(Keeps::Materials) {
         for material in &shape.materials {
             let why = format!("{name} has no place for it");
-            losses.push(Loss::new(format!("material \"{}\"", material.name), why));
+            losses.push(format!("material \"{}\"", material.name), why);
         }
     }
     if let Some(units) = shape.units.filter(|_| !keeps(Keeps::Units)) {
         let why = format!("{name} has no place for it");
-        losses.push(Loss::new(format!("unit of length ({} m)", units.meters()), why));
+        losses.push(format!("unit of length ({} m)", units.meters()), why);
     }
     if let Some(up) = shape.up.filter(|_| !keeps(Keeps::UpAxis)) {
-        losses.push(Loss::new(format!("up axis ({})", up.name()), format!("{name} has no place for it")));
+        losses.push(format!("up axis ({})", up.name()), format!("{name} has no place for it"));
     }
     if !keeps(Keeps::Tables) {
-        let names = shape.tables.iter().map(|table| format!("table \"{}\"", table.name));
-        losses.extend(names.map(|what| Loss::new(what, format!("{name} has no place for it"))));
+        for table in &shape.tables {
+            losses.push(format!("table \"{}\"", table.name), format!("{name} has no place for it"));
+        }
     }
     if !keeps(Keeps::Comments) && !shape.comments.is_empty() {
         let count = shape.comments.len();
-        let what = if count == 1 { "1 comment".into() } else { format!("{count} comments") };
-        losses.push(Loss::new(what, format!("{name} has no place for them")));
+        let what = if count == 1 { "1 comment".to_owned() } else { format!("{count} comments") };
+        losses.push(what, format!("{name} has no place for them"));
     }
-    let mut columns = Losses::default();
     for part in &shape.parts {
-        column_losses(&part.geometry, format, &mut columns);
+        column_losses(&part.geometry, format, &mut losses);
     }
-    losses.extend(columns.into_vec());
-    losses
+    losses.into_vec()
 }
 
 /// Columns of lists and of edges that the format does not keep.
@@ -175,17 +174,37 @@ pub(crate) fn edge_columns_of(geometry: &Geometry) -> Option<&Attributes> {
 pub(crate) struct Losses {
     list: Vec<Loss>,
     said: HashSet<(String, String)>,
+    /// How often each reason was given.
+    alike: HashMap<String, u64>,
+}
+
+/// Each of so many losses of one reason has a line; those beyond are counted in one more.
+const MANY: u64 = 100;
+
+/// What was lost, cut where names make it long.
+fn shortened(what: String) -> String {
+    match what.char_indices().nth(200) {
+        Some((end, _)) => format!("{}... ({} bytes)", &what[..end], what.len()),
+        None => what,
+    }
 }
 
 impl Losses {
     pub(crate) fn from(losses: Vec<Loss>) -> Self {
-        let said = losses.iter().map(|loss| (loss.what.clone(), loss.why.clone())).collect();
-        Self { list: losses, said }
+        let mut all = Self::default();
+        losses.into_iter().for_each(|loss| all.push(loss.what, loss.why));
+        all
     }
 
     pub(crate) fn push(&mut self, what: impl Into<String>, why: impl Into<String>) {
-        let loss = Loss::new(what, why);
-        if self.said.insert((loss.what.clone(), loss.why.clone())) {
+        let loss = Loss::new(shortened(what.into()), why);
+        if self.said.contains(&(loss.what.clone(), loss.why.clone())) {
+            return;
+        }
+        let alike = self.alike.entry(loss.why.clone()).or_insert(0);
+        *alike += 1;
+        if *alike <= MANY {
+            self.said.insert((loss.what.clone(), loss.why.clone()));
             self.list.push(loss);
         }
     }
@@ -194,7 +213,12 @@ impl Losses {
         self.push(format!("{domain} attribute \"{name}\""), why);
     }
 
-    pub(crate) fn into_vec(self) -> Vec<Loss> {
+    pub(crate) fn into_vec(mut self) -> Vec<Loss> {
+        let mut more: Vec<(String, u64)> = self.alike.into_iter().filter(|(_, count)| *count > MANY).collect();
+        more.sort();
+        for (why, count) in more {
+            self.list.push(Loss::new(format!("{} more of the same kind", count - MANY), why));
+        }
         self.list
     }
 }

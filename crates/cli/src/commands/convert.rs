@@ -167,6 +167,7 @@ impl<'a> Delivery<'a> {
             "output": { "name": self.target.output.display().to_string(), "format": self.format.id },
             "tolerance": account::number(job.tolerance),
             "steps": account::steps(&conversion, session.globals.timings),
+            "left_out": account::losses(&conversion.losses),
             "writing": account::report(&written),
             "deviation": account::deviation(deviation),
             "within_tolerance": deviation.is_within(job.tolerance),
@@ -215,6 +216,9 @@ impl<'a> Delivery<'a> {
                 session.say(format_args!("lost: {loss}"));
             }
         }
+        for loss in &conversion.losses {
+            session.say(format_args!("lost: {loss}"));
+        }
         session.say_findings(&written.findings);
         for loss in &written.losses {
             session.say(format_args!("lost: {loss}"));
@@ -241,7 +245,8 @@ fn explain(shape: &Shape, job: &Job, session: &mut Session<'_>) -> Result<(), Fa
     let targets: Vec<&str> = job.wish.targets.iter().map(|kind| kind.name()).collect();
     for (index, part) in shape.parts.iter().enumerate() {
         let kind = part.geometry.kind();
-        let plan = plan(kind, &job.wish)?;
+        // What leads nowhere is named after the conversion.
+        let Ok(plan) = plan(kind, &job.wish) else { continue };
         let steps: Vec<&str> = plan.steps.iter().map(|step| step.name).collect();
         let way = if steps.is_empty() { "as it is".to_owned() } else { format!("by {}", steps.join(", then ")) };
         session.say(format_args!(

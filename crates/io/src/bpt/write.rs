@@ -123,7 +123,7 @@ mod tests {
         // y up becomes z up: (x, y, z) to (x, -z, y).
         assert_eq!(String::from_utf8(file).unwrap().lines().nth(4), Some("0 0 1"));
         let whats: Vec<&str> = report.losses.iter().map(|loss| loss.what.as_str()).collect();
-        assert_eq!(whats.len(), 6, "{whats:?}");
+        assert_eq!(whats.len(), 5, "{whats:?}");
         assert!(whats.contains(&"part name \"line\"") && whats.contains(&"unit of length (0.0254 m)"));
         assert_eq!(report.findings.iter().next().unwrap().code, "W-bpt-up");
     }

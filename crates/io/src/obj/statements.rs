@@ -412,7 +412,7 @@ impl<'e> Piece<'e> {
             b"vp" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end"
             | b"con" | b"bzp" | b"bsp" | b"cdc" | b"cdp" | b"res" => {
                 let message = format!("{} belongs to free-form curves and was passed over", quoted(word));
-                self.findings.push("W-obj-ignored", Severity::Warning, place, message);
+                self.findings.push("W-obj-freeform", Severity::Warning, place, message);
                 Ok(())
             }
             b"call" | b"csh" => {
@@ -423,7 +423,7 @@ impl<'e> Piece<'e> {
             b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"maplib" | b"usemap" | b"shadow_obj"
             | b"trace_obj" | b"ctech" | b"stech" => {
                 let message = format!("{} says how to draw the shape, and was passed over", quoted(word));
-                self.findings.push("W-obj-ignored", Severity::Note, place, message);
+                self.findings.push("W-obj-drawing", Severity::Note, place, message);
                 Ok(())
             }
             word => {

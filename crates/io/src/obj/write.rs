@@ -492,6 +492,9 @@ fn lose(geometry: &Geometry, domain: Domain, column: &Column, losses: &mut Losse
             }
         }
         (SMOOTHING, Domain::Face) if matches!(column.values(), Values::U32(_)) && column.width() == 1 => {}
+        (NORMAL | TEXCOORD, Domain::Vertex) => {
+            losses.column(domain, name, "lines and points of OBJ have none");
+        }
         _ => losses.column(domain, name, "OBJ has no place for it"),
     }
 }

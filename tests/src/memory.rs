@@ -1,0 +1,81 @@
+//! The memory of the process itself, on files made to take much of it.
+
+use std::process::Command;
+
+use crate::support::root;
+
+/// Beside what the program takes for nothing: its own code, threads and buffers.
+const BASE: u64 = 64 << 20;
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// The peak of a process that runs these words, in bytes; none where the system does not tell.
+fn peak(words: &[&str]) -> Option<u64> {
+    let program = env!("CARGO_BIN_EXE_shapeloom-under-test");
+    let mut command = Command::new(program);
+    let outcome =
+        command.args(words).env("SHAPELOOM_PEAK", "1").current_dir(root()).output().expect("the program runs");
+    let code = outcome.status.code();
+    assert!([Some(0), Some(3), Some(4), Some(7)].contains(&code), "{words:?}: {code:?}");
+    let text = String::from_utf8_lossy(&outcome.stderr).into_owned();
+    text.lines().last()?.parse::<u64>().ok().map(|kilobytes| kilobytes << 10)
+}
+
+fn numbered(count: usize, line: impl Fn(usize) -> String) -> String {
+    (0..count).map(line).collect()
+}
+
+/// What is read takes at most 64 MB and 40 times the file, measured from outside.
+#[test]
+fn readers_take_memory_in_proportion_to_the_file() {
+    let long = "n".repeat(300_000);
+    let files: Vec<(&str, String)> = vec![
+        (
+            "names.obj",
+            format!(
+                "{SQUARE}g {long}\n{}",
+                numbered(4000, |i| format!("o {i}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -3\n"))
+            ),
+        ),
+        ("groups.obj", format!("{SQUARE}{}", numbered(100_000, |i| format!("g {i}\nf 1 2 3\n")))),
+        ("materials.obj", format!("{SQUARE}{}", numbered(100_000, |i| format!("usemtl {i}\nf 1 2 3\n")))),
+        ("objects.obj", numbered(60_000, |i| format!("o {i}\nv 0 0 0\nf -1 -1 -1\n"))),
+        ("lines.obj", numbered(60_000, |i| format!("o {i}\nv 0 0 0\nv 1 1 1\nl 1 2\n"))),
+        ("corners.obj", format!("{SQUARE}{}", "f 1 2 3 4\n".repeat(300_000))),
+        ("late.obj", format!("{SQUARE}vt 0\nvn 0 0 1\n{}f 1/1/1 2/1/1 3/1/1\n", "f 1 2 3\n".repeat(300_000))),
+        ("solids.stl", "solid\nendsolid\n".repeat(100_000)),
+        (
+            "facets.stl",
+            format!(
+                "solid\n{}endsolid\n",
+                "facet outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet\n".repeat(50_000)
+            ),
+        ),
+        ("points.off", format!("OFF 300000 0 0\n{}", "0 0 0\n".repeat(300_000))),
+        ("faces.off", format!("OFF 3 300000 0\n0 0 0\n1 0 0\n0 1 0\n{}", "3 0 1 2 1 2 3\n".repeat(300_000))),
+        (
+            "rows.ply",
+            format!(
+                "ply\nformat ascii 1.0\nelement vertex 300000\nproperty char x\nproperty char y\nproperty char z\nproperty list uchar char l\nend_header\n{}",
+                "0 0 0 0\n".repeat(300_000)
+            ),
+        ),
+        (
+            "tables.ply",
+            format!(
+                "ply\nformat ascii 1.0\n{}end_header\n{}",
+                numbered(3000, |i| format!("element e{i} 30\nproperty char a\n")),
+                "1\n".repeat(90_000)
+            ),
+        ),
+    ];
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::write(&path, &text).expect("a file");
+        let path = path.display().to_string();
+        let Some(found) = peak(&["info", &path]) else { return };
+        let most = BASE + 40 * text.len() as u64;
+        assert!(found <= most, "{name}: {} bytes took {found}, more than {most}", text.len());
+    }
+}
