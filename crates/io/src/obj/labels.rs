@@ -168,3 +168,8 @@ fn smoothing(text: &[u8], start: usize, words: &[u8], findings: &mut Findings) -
         }
     }
 }
+
+/// Runs of the same object in a row.
+pub(super) fn by_object(runs: &[Run]) -> impl Iterator<Item = &[Run]> {
+    runs.chunk_by(|a, b| a.labels.object == b.labels.object)
+}

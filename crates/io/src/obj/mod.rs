@@ -6,12 +6,15 @@
 //! written once in a file; materials go into a library beside it.
 
 mod assemble;
+mod columns;
 mod freeform;
 mod labels;
 mod mtl;
+mod owners;
 mod read;
 #[cfg(test)]
 mod read_tests;
+mod sides;
 mod statements;
 #[cfg(test)]
 mod tests;
