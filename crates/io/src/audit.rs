@@ -1,6 +1,7 @@
 //! What readers look for in every mesh: faces without area, positions that are not finite.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
@@ -114,19 +115,23 @@ pub(crate) fn drop_non_finite(shape: &mut Shape, exec: &Exec, findings: &mut Fin
     let mut old = Vec::new();
     for (index, part) in shape.parts.iter_mut().enumerate() {
         exec.check()?;
-        let key = Arc::as_ptr(&part.geometry);
-        if !known.contains_key(&key) {
-            // The copy of what is kept, and the lists that say what that is.
-            let _memory = exec.reserve(2 * part.geometry.memory_bytes() as u64)?;
-            let kept = finite_part(&part.geometry)?;
-            if let Some((_, vertices, faces)) = &kept {
-                let message =
-                    format!("left out {vertices} vertices that are not finite, and {faces} faces or segments of them");
-                findings.push("W-read-dropped", Severity::Warning, Place::element("part", index as u64), message);
+        let kept = match known.entry(Arc::as_ptr(&part.geometry)) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(slot) => {
+                // The copy of what is kept, and the lists that say what that is.
+                let _memory = exec.reserve(2 * part.geometry.memory_bytes() as u64)?;
+                let kept = finite_part(&part.geometry)?;
+                if let Some((_, vertices, faces)) = &kept {
+                    let message = format!(
+                        "left out {vertices} vertices that are not finite, and {faces} faces or segments of them"
+                    );
+                    let place = Place::element("part", index as u64);
+                    findings.push("W-read-dropped", Severity::Warning, place, message);
+                }
+                slot.insert(kept.map(|(kept, ..)| Arc::new(kept)))
             }
-            known.insert(key, kept.map(|(kept, ..)| Arc::new(kept)));
-        }
-        if let Some(Some(kept)) = known.get(&key) {
+        };
+        if let Some(kept) = kept {
             // Held until the end, so that no other geometry comes to lie at its address.
             old.push(std::mem::replace(&mut part.geometry, Arc::clone(kept)));
         }
