@@ -66,9 +66,10 @@ fn each_defect_of_text_is_told_with_its_line() {
         stl(&with("vertex 1 0 0", "vertex 1,0 0 0")).expect_err("a comma").advice().expect("advice").contains("comma")
     );
     for (input, code, line) in [
-        (with("endsolid x\n", ""), "W-stl-solid", 8),
+        (with("endsolid x\n", ""), "W-stl-open", 8),
         (with("solid x\n", ""), "W-stl-solid", 1),
-        (with("endsolid x\n", TEXT), "W-stl-solid", 9),
+        (with("endsolid x\n", TEXT), "W-stl-nested", 9),
+        (format!("{TEXT}endsolid\n").into_bytes(), "W-stl-end", 10),
         (format!("{TEXT}\n\nthat was all\n").into_bytes(), "W-stl-trailing", 12),
         (with("0 0 1", "0 nan 1"), "W-stl-normal", 2),
         (with("0 0 1", "a b c"), "W-stl-normal", 2),

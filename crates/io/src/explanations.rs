@@ -293,15 +293,25 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-stl-color", "Some facets of a binary STL file have a colour and others have none. These were taken as white."),
     ("W-stl-degenerate", "A facet has two equal corners, or its corners lie on one line. It was kept."),
     ("W-stl-empty", "The file has no facets; the mesh is empty."),
+    ("W-stl-end", "The word endsolid stands where no solid has begun. It was passed over."),
+    (
+        "W-stl-nested",
+        "A solid begins before the one before it has ended. Each is a part; the word endsolid may be missing.",
+    ),
     (
         "W-stl-normal",
         "A stored normal is not three finite numbers. Stored normals are not kept: they follow from the corners.",
     ),
     (
-        "W-stl-solid",
-        "A solid begins or ends without the word that belongs there. The facets were read all the same; after the last one the file may be cut off.",
+        "W-stl-open",
+        "The last solid does not end with the word endsolid. All facets were read; the file may be cut off between two of them.",
     ),
+    ("W-stl-solid", "Facets without the word solid before them became a part without a name."),
     ("W-stl-trailing", "More follows after the last facet. It was not read; the count may be too small."),
+    (
+        "W-text-encoding",
+        "A name or comment is not in UTF-8, which shapes keep. Bytes that could not be read were replaced; save the file as UTF-8 to keep them.",
+    ),
 ];
 
 /// The explanation of a code of this crate.

@@ -2,12 +2,14 @@
 
 mod decimal;
 mod lines;
+mod lossy;
 mod numbers;
 mod pieces;
 mod scanner;
 mod shortest;
 
 pub use lines::{Line, Lines, Text, Token, Tokens, quoted};
+pub(crate) use lossy::lossy;
 pub use numbers::{CountFault, NumberFault, parse_count, parse_number};
 #[cfg(test)]
 pub(crate) use pieces::cut;
