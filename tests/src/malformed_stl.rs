@@ -144,8 +144,10 @@ fn what_is_not_finite_is_left_out_when_asked() {
 
 #[test]
 fn bombs_stay_small() {
-    let solids = "solid\nendsolid\n".repeat(50_000);
-    assert_eq!(stl(solids.as_bytes()).expect("empty solids").shape.parts.len(), 50_000);
+    let solids = |count| "solid\nendsolid\n".repeat(count);
+    assert_eq!(stl(solids(20_000).as_bytes()).expect("empty solids").shape.parts.len(), 20_000);
+    let place = Place::line(2 * (16_384 + 750_000 / 32) + 1);
+    assert_eq!(refused(solids(50_000).as_bytes()), ("E-stl-limit", place));
     let begun = "solid a\n".repeat(100_000);
     assert_eq!(stl(begun.as_bytes()).expect("one solid").shape.parts.len(), 1);
     let ended = format!("solid\n{}", "endsolid\n".repeat(100_000));

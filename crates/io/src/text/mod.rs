@@ -13,6 +13,6 @@ pub(crate) use lossy::lossy;
 pub use numbers::{CountFault, NumberFault, parse_count, parse_number};
 #[cfg(test)]
 pub(crate) use pieces::cut;
-pub(crate) use pieces::{never_joined, pieces};
+pub(crate) use pieces::{never_joined, pieces, rows_before};
 pub(crate) use scanner::{Scanner, end_place, in_lines, is_blank, line_at, line_place, plain_text};
 pub use shortest::{push_count, push_integer, push_number, push_single, shortest};
