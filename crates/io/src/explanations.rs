@@ -110,7 +110,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-off-dimension", "Only vertices of one to three coordinates are read. Project shapes of more dimensions first."),
     (
         "E-off-finite",
-        "A number of a vertex is infinite, no number, or larger than the largest double. Repair the program that wrote the file, or have vertices that are not finite left out.",
+        "A coordinate is infinite, no number, or larger than the largest double. Repair the program that wrote the file, or have vertices that are not finite left out.",
     ),
     ("E-off-header", "An OFF file begins with a keyword such as OFF, COFF or NOFF, or with its number of vertices."),
     ("E-off-index", "A face names a vertex that does not exist. Vertices are counted from 0."),
@@ -187,7 +187,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-stl-limit",
-        "The file has more facets or solids than the reader's limits allow, or than 32 bits can count the corners of.",
+        "The file has more facets or solids than the reader's limits allow, more solids than its length gives reason for, or more facets than 32 bits can count the corners of.",
     ),
     (
         "E-stl-number",

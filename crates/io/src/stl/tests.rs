@@ -151,7 +151,10 @@ fn texts_of_shuffled_lines_are_the_same_wherever_they_are_cut() {
 fn floods_of_solids_are_refused() {
     let many = "solid\nendsolid\n".repeat(40_000);
     let facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop\nendfacet\n";
-    for text in [many.clone(), format!("{many}solid\n{facet}{facet}")] {
+    // Neither half is too many.
+    let half = "solid\nendsolid\n".repeat(30_000);
+    let halves = format!("{half}solid\n{facet}{facet}endsolid\n{half}");
+    for text in [many.clone(), format!("{many}solid\n{facet}{facet}"), halves] {
         for size in [usize::MAX, 500_000, 100] {
             let error = cut_into(&text, size).unwrap_err();
             assert_eq!((error.code(), error.category()), ("E-stl-limit", Category::OverLimit));
