@@ -66,9 +66,10 @@ fn each_defect_of_text_is_told_with_its_line() {
         stl(&with("vertex 1 0 0", "vertex 1,0 0 0")).expect_err("a comma").advice().expect("advice").contains("comma")
     );
     for (input, code, line) in [
-        (with("endsolid x\n", ""), "W-stl-solid", 8),
+        (with("endsolid x\n", ""), "W-stl-open", 8),
         (with("solid x\n", ""), "W-stl-solid", 1),
-        (with("endsolid x\n", TEXT), "W-stl-solid", 9),
+        (with("endsolid x\n", TEXT), "W-stl-nested", 9),
+        (format!("{TEXT}endsolid\n").into_bytes(), "W-stl-end", 10),
         (format!("{TEXT}\n\nthat was all\n").into_bytes(), "W-stl-trailing", 12),
         (with("0 0 1", "0 nan 1"), "W-stl-normal", 2),
         (with("0 0 1", "a b c"), "W-stl-normal", 2),
@@ -143,8 +144,10 @@ fn what_is_not_finite_is_left_out_when_asked() {
 
 #[test]
 fn bombs_stay_small() {
-    let solids = "solid\nendsolid\n".repeat(50_000);
-    assert_eq!(stl(solids.as_bytes()).expect("empty solids").shape.parts.len(), 50_000);
+    let solids = |count| "solid\nendsolid\n".repeat(count);
+    assert_eq!(stl(solids(20_000).as_bytes()).expect("empty solids").shape.parts.len(), 20_000);
+    let place = Place::line(2 * (16_384 + 750_000 / 32) + 1);
+    assert_eq!(refused(solids(50_000).as_bytes()), ("E-stl-limit", place));
     let begun = "solid a\n".repeat(100_000);
     assert_eq!(stl(begun.as_bytes()).expect("one solid").shape.parts.len(), 1);
     let ended = format!("solid\n{}", "endsolid\n".repeat(100_000));

@@ -110,7 +110,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-off-dimension", "Only vertices of one to three coordinates are read. Project shapes of more dimensions first."),
     (
         "E-off-finite",
-        "A number of a vertex is infinite, no number, or larger than the largest double. Repair the program that wrote the file, or have vertices that are not finite left out.",
+        "A coordinate is infinite, no number, or larger than the largest double. Repair the program that wrote the file, or have vertices that are not finite left out.",
     ),
     ("E-off-header", "An OFF file begins with a keyword such as OFF, COFF or NOFF, or with its number of vertices."),
     ("E-off-index", "A face names a vertex that does not exist. Vertices are counted from 0."),
@@ -187,7 +187,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-stl-limit",
-        "The file has more facets or solids than the reader's limits allow, or than 32 bits can count the corners of.",
+        "The file has more facets or solids than the reader's limits allow, more solids than its length gives reason for, or more facets than 32 bits can count the corners of.",
     ),
     (
         "E-stl-number",
@@ -260,26 +260,42 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-obj-statement", "A line begins with a word that OBJ does not have."),
     ("W-obj-texture", "A texture that a material names is not beside the file. Its name was kept."),
     ("W-obj-weight", "A vertex has the weight 0. Weights mean nothing for polygons; they are kept as a column."),
+    ("W-off-bright", "Some fractions of colours are above 1, brighter than white. They were kept as they are."),
     (
         "W-off-color",
-        "Something about the colours was guessed: what whole numbers mean, the colour of a face that has none among others that have one, or that columns are a colour though the keyword does not say so.",
+        "A colour is infinite or not a number. It was taken as none: the vertex is white, the face grey, where others have a colour.",
     ),
     (
-        "W-off-degenerate",
-        "A face has fewer than three corners and was left out, or names a vertex twice or has no area and was kept.",
+        "W-off-columns",
+        "Vertices have three or four more numbers than the keyword promises. They were taken as a colour; say COFF if they are.",
     ),
+    (
+        "W-off-dark",
+        "Colours of faces are whole numbers of which none is above 1. They were taken as bytes, nearly black; fractions have a decimal point.",
+    ),
+    ("W-off-degenerate", "A face names a vertex twice or has no area. It was kept."),
     ("W-off-empty", "The file has no vertices; the mesh is empty."),
-    ("W-off-header", "The number of vertices follows the keyword without a space."),
-    ("W-off-trailing", "More follows after the last face. It was not read; the number of faces may be too small."),
     (
-        "W-ply-degenerate",
-        "Faces, or strips, of fewer than three corners were left out; faces that name a vertex twice or have no area were kept.",
+        "W-off-finite",
+        "A normal or texture coordinate is infinite or not a number. It was kept as it is; only positions are left out on request.",
     ),
+    (
+        "W-off-fractions",
+        "Colours of vertices are whole numbers of which none is above 1. They were taken as fractions, as Geomview takes them.",
+    ),
+    ("W-off-grey", "Some faces have a colour and others have none. These were taken as grey, as Geomview takes them."),
+    ("W-off-header", "The number of vertices follows the keyword without a space."),
+    ("W-off-mixed", "Some colours are in bytes and others in fractions. All became fractions."),
+    ("W-off-skipped", "A face has fewer than three corners. It was left out."),
+    ("W-off-trailing", "More follows after the last face. It was not read; the number of faces may be too small."),
+    ("W-ply-degenerate", "A face names a vertex twice or has no area. It was kept."),
     (
         "W-ply-edges",
         "The file has edges beside its faces. They became a part of their own, with copies of the vertices that they join.",
     ),
     ("W-ply-empty", "The file has no vertices: the mesh is empty."),
+    ("W-ply-skipped", "A face has fewer than three corners. It was left out, with the rest of its row."),
+    ("W-ply-strips", "A triangle strip has only one or two vertices, which make no triangle. It was left out."),
     (
         "W-ply-table",
         "An element that is called as faces, edges or strips are does not say which vertices it joins. It was kept as a table.",
@@ -294,15 +310,25 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-stl-color", "Some facets of a binary STL file have a colour and others have none. These were taken as white."),
     ("W-stl-degenerate", "A facet has two equal corners, or its corners lie on one line. It was kept."),
     ("W-stl-empty", "The file has no facets; the mesh is empty."),
+    ("W-stl-end", "The word endsolid stands where no solid has begun. It was passed over."),
+    (
+        "W-stl-nested",
+        "A solid begins before the one before it has ended. Each is a part; the word endsolid may be missing.",
+    ),
     (
         "W-stl-normal",
         "A stored normal is not three finite numbers. Stored normals are not kept: they follow from the corners.",
     ),
     (
-        "W-stl-solid",
-        "A solid begins or ends without the word that belongs there. The facets were read all the same; after the last one the file may be cut off.",
+        "W-stl-open",
+        "The last solid does not end with the word endsolid. All facets were read; the file may be cut off between two of them.",
     ),
+    ("W-stl-solid", "Facets without the word solid before them became a part without a name."),
     ("W-stl-trailing", "More follows after the last facet. It was not read; the count may be too small."),
+    (
+        "W-text-encoding",
+        "A name or comment is not in UTF-8, which shapes keep. Bytes that could not be read were replaced; save the file as UTF-8 to keep them.",
+    ),
 ];
 
 /// The explanation of a code of this crate.

@@ -39,6 +39,7 @@ mod memory;
 mod obj;
 mod off;
 mod options;
+mod parts;
 mod placed;
 mod ply;
 mod read;

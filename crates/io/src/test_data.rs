@@ -9,3 +9,32 @@ pub(crate) fn shared_data(name: &str) -> Option<PathBuf> {
     let candidates = ["../shared/data", "../../shared/data"].map(|folder| workspace.join(folder).join(name));
     candidates.into_iter().find(|path| path.exists())
 }
+
+/// Texts made of the lines of another one, left out, repeated, exchanged and cut: as many as asked for, the same each
+/// time.
+pub(crate) fn shuffled_lines(text: &str, count: usize, mut check: impl FnMut(&str)) {
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    let mut state = 7u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below.max(1)
+    };
+    for _ in 0..count {
+        let mut some = lines.clone();
+        for _ in 0..=random(4) {
+            let (from, to) = (random(some.len()), random(some.len()));
+            match random(5) {
+                0 => _ = some.remove(from),
+                1 => some.insert(to, lines[random(lines.len())]),
+                2 => some.swap(from, to),
+                3 => some[from] = lines[random(lines.len())],
+                // The line end goes, or the end of a word.
+                _ => some[from] = &some[from][..some[from].len().saturating_sub(1 + random(2))],
+            }
+            if some.is_empty() {
+                some.push("\n");
+            }
+        }
+        check(&some.concat());
+    }
+}

@@ -113,7 +113,8 @@ impl Bytes<'_> {
             *number = self.float("the numbers of a vertex")?;
         }
         let within = || format!("vertex {vertex}");
-        if let Some(odd) = numbers.iter().find(|number| !number.is_finite())
+        let spatial = layout.dimension + usize::from(layout.weight);
+        if let Some(odd) = numbers[..spatial].iter().find(|number| !number.is_finite())
             && !context.options.drop_non_finite
         {
             let fault = Fault::new("E-off-finite", place, odd.to_string(), "finite numbers").within(within());
@@ -131,15 +132,23 @@ impl Bytes<'_> {
             position /= weight;
         }
         body.positions.push(memory, position)?;
-        let beside = &mut numbers[layout.dimension + usize::from(layout.weight)..];
+        let beside = &mut numbers[spatial..];
+        let colors = layout.color_at()..layout.color_at() + layout.color;
+        if beside.iter().enumerate().any(|(at, number)| !number.is_finite() && !colors.contains(&at)) {
+            body.odd_numbers(place.clone());
+        }
         if layout.color > 0 {
-            let color = &mut beside[layout.color_at()..layout.color_at() + layout.color];
+            let color = &mut beside[colors];
             let channels: [Channel; 4] = std::array::from_fn(|index| Channel::Fraction(color[index]));
-            body.vertex_colors.note(&channels);
             let Some(found) = stored(&channels) else {
                 let fault = Fault::new("E-off-color", place, "a colour outside of its range", "fractions from 0");
                 return Err(fault.within(within()).into());
             };
+            if found[0].is_nan() {
+                body.odd_color(place);
+            } else {
+                body.vertex_colors.note(&channels);
+            }
             color.copy_from_slice(&found[..layout.color]);
         }
         Ok(body.beside.extend(memory, beside)?)
@@ -217,7 +226,9 @@ impl Bytes<'_> {
                     let fault = Fault::new("E-off-color", place, "a colour outside of its range", "fractions from 0");
                     return Err(fault.into());
                 };
-                if keep {
+                if color[0].is_nan() {
+                    body.odd_color(place);
+                } else if keep {
                     let face = body.faces.len();
                     body.face_colors.put(memory, face, color, found)?;
                 }

@@ -5,7 +5,7 @@ use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_mesh::{Column, Domain, NORMAL, TEXCOORD, TriMesh};
 use shapeloom_shape::{Geometry, Part, Shape};
 
-use super::color::{FaceColors, Seen, column};
+use super::color::{FaceColors, Seen, WHITE, column};
 use super::counts::Counts;
 use super::header::Header;
 use super::{COLORMAP, NO_INDEX};
@@ -108,8 +108,22 @@ impl Body {
     pub(super) fn skip(&mut self, memory: &mut Memory<'_>, place: Place, corners: u64) -> Result<(), ReadError> {
         self.skipped.push(memory, self.faces.len() as u32)?;
         let message = format!("a face of {corners} corners was left out");
-        self.findings.push("W-off-degenerate", Severity::Warning, place, message);
+        self.findings.push("W-off-skipped", Severity::Warning, place, message);
         Ok(())
+    }
+
+    /// A normal, or texture coordinates, that are not finite.
+    #[cold]
+    pub(super) fn odd_numbers(&mut self, place: Place) {
+        let message = "a normal or texture coordinate that is not finite was kept as it is";
+        self.findings.push("W-off-finite", Severity::Warning, place, message);
+    }
+
+    /// A colour that is not finite.
+    #[cold]
+    pub(super) fn odd_color(&mut self, place: Place) {
+        let message = "a colour that is not finite was taken as none";
+        self.findings.push("W-off-color", Severity::Warning, place, message);
     }
 
     /// Adds what follows after this.
@@ -188,14 +202,16 @@ impl Body {
             let normals: Vec<DVec3> = vertices().map(|row| DVec3::new(row[0], row[1], row[2])).collect();
             columns.push((Domain::Vertex, Column::normals(NORMAL, &normals)));
         }
-        if layout.color > 0 {
+        if layout.color > 0 && self.vertex_colors.any {
             let at = layout.color_at();
             let colors = vertices().map(|row| &row[at..at + layout.color]);
-            columns.extend(column(colors, self.vertex_colors, false, memory)?.map(|column| (Domain::Vertex, column)));
+            columns.extend(
+                column(colors, self.vertex_colors, false, WHITE, memory)?.map(|column| (Domain::Vertex, column)),
+            );
             let seen = self.vertex_colors;
             if !seen.fractions && !seen.bytes {
                 let message = "colours of vertices in whole numbers of which none is above 1 were taken as fractions";
-                self.findings.push("W-off-color", Severity::Note, Place::Whole, message);
+                self.findings.push("W-off-fractions", Severity::Note, Place::Whole, message);
             }
             self.note_bright(seen);
         }
@@ -213,12 +229,12 @@ impl Body {
         if self.face_colors.count < faces {
             let message = "faces without a colour among others that have one were taken as grey";
             let without = (faces - self.face_colors.count) as u64;
-            self.findings.push_many("W-off-color", Severity::Note, Place::Whole, message, without);
+            self.findings.push_many("W-off-grey", Severity::Note, Place::Whole, message, without);
         }
         if !seen.fractions && !seen.bytes {
             let message = "colours of faces in whole numbers are bytes, and all of these are nearly black; fractions have \
                            a decimal point";
-            self.findings.push("W-off-color", Severity::Note, Place::Whole, message);
+            self.findings.push("W-off-dark", Severity::Note, Place::Whole, message);
         }
         self.note_bright(seen);
     }
@@ -226,11 +242,11 @@ impl Body {
     fn note_bright(&mut self, seen: Seen) {
         if seen.bright {
             let message = "fractions of colours above 1 were kept as they are";
-            self.findings.push("W-off-color", Severity::Note, Place::Whole, message);
+            self.findings.push("W-off-bright", Severity::Note, Place::Whole, message);
         }
         if seen.fractions && seen.bytes {
             let message = "colours in bytes among others in fractions became fractions of 255";
-            self.findings.push("W-off-color", Severity::Note, Place::Whole, message);
+            self.findings.push("W-off-mixed", Severity::Note, Place::Whole, message);
         }
     }
 }

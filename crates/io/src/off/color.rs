@@ -6,7 +6,9 @@ use shapeloom_mesh::{COLOR, Column, Values};
 use crate::memory::{Growing, Memory};
 
 /// The channel of a face without a colour among others that have one, as Geomview takes it: two thirds.
-const GREY: f64 = 170.0;
+pub(super) const GREY: f64 = 170.0;
+/// That of a vertex without a colour among others that have one.
+pub(super) const WHITE: f64 = 255.0;
 
 /// A channel of a colour as it is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,9 +20,12 @@ pub(super) enum Channel {
 }
 
 /// A colour on its way: fractions as they are, bytes below zero, so that one number tells which it is; no number where
-/// there is none. Whole numbers of which none is above 1 are the same in both.
+/// there is none, and where a channel is not finite. Whole numbers of which none is above 1 are the same in both.
 pub(super) fn stored(channels: &[Channel]) -> Option<[f64; 4]> {
     let mut color = [f64::NAN; 4];
+    if channels.iter().any(|channel| matches!(channel, Channel::Fraction(fraction) if !fraction.is_finite())) {
+        return Some(color);
+    }
     let bytes = channels.iter().all(|channel| matches!(channel, Channel::Whole(_)))
         && channels.iter().any(|channel| matches!(channel, Channel::Whole(2..)));
     for (stored, channel) in color.iter_mut().zip(channels) {
@@ -38,6 +43,8 @@ pub(super) fn stored(channels: &[Channel]) -> Option<[f64; 4]> {
 /// What is known of many colours.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Seen {
+    /// There is some colour.
+    pub any: bool,
     /// Some number has a point or an exponent.
     pub fractions: bool,
     /// Some colour is in bytes beyond 1.
@@ -59,10 +66,12 @@ impl Seen {
                 }
             }
         }
+        self.any = true;
         self.alpha |= channels.len() == 4;
     }
 
     pub(super) fn join(&mut self, other: Self) {
+        self.any |= other.any;
         self.fractions |= other.fractions;
         self.bytes |= other.bytes;
         self.bright |= other.bright;
@@ -70,11 +79,13 @@ impl Seen {
     }
 }
 
-/// The column of colours stored so; `whole_bytes` says what whole numbers are of which none is above 1.
+/// The column of colours stored so, `missing` in bytes where there is none; `whole_bytes` says what whole numbers are of
+/// which none is above 1.
 pub(super) fn column<'c>(
     colors: impl ExactSizeIterator<Item = &'c [f64]>,
     seen: Seen,
     whole_bytes: bool,
+    missing: f64,
     memory: &mut Memory<'_>,
 ) -> Result<Option<Column>, OverBudget> {
     let width = if seen.alpha { 4 } else { 3 };
@@ -84,9 +95,9 @@ pub(super) fn column<'c>(
     let channel = |color: &[f64], index: usize| {
         let stored = color.get(index).copied().unwrap_or(f64::NAN);
         match (stored.is_nan(), index) {
-            // A colour of three channels is opaque; a face without any is grey.
+            // A colour of three channels is opaque.
             (true, 3) => -1.0 - 255.0,
-            (true, _) => -1.0 - GREY,
+            (true, _) => -1.0 - missing,
             (false, _) => stored,
         }
     };
@@ -151,6 +162,6 @@ impl FaceColors {
             return Ok(None);
         }
         self.fill(memory, faces)?;
-        column(self.colors.as_slice().iter().map(|color| &color[..]), self.seen, true, memory)
+        column(self.colors.as_slice().iter().map(|color| &color[..]), self.seen, true, GREY, memory)
     }
 }

@@ -156,19 +156,23 @@ impl<'a> Reader<'a> {
         position[..layout.dimension].copy_from_slice(&numbers[..layout.dimension]);
         let mut position = DVec3::from_array(position);
         if layout.weight {
-            position = self.projected(position, numbers[layout.dimension], place)?;
+            position = self.projected(position, numbers[layout.dimension], place.clone())?;
         }
         let beside = layout.beside();
-        let mut at = 0;
+        let (mut at, mut odd) = (0, false);
         while at < beside {
             if at == layout.color_at() && layout.color > 0 {
                 let color = self.color(layout.color)?;
                 numbers[at..at + layout.color].copy_from_slice(&color[..layout.color]);
                 at += layout.color;
             } else {
-                numbers[at] = self.coordinate()?;
+                numbers[at] = self.beside()?;
+                odd |= !numbers[at].is_finite();
                 at += 1;
             }
+        }
+        if odd {
+            self.body.odd_numbers(place);
         }
         self.body.positions.push(&mut self.memory, position)?;
         self.body.beside.extend(&mut self.memory, &numbers[..beside])?;
@@ -210,6 +214,27 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// A number that is no coordinate, which need not be finite.
+    #[inline]
+    fn beside(&mut self) -> Result<f64, ReadError> {
+        match self.scan.number_text() {
+            Ok(number) => Ok(number),
+            Err(NumberFault::Syntax) => self.no_coordinate(NumberFault::Syntax),
+            Err(_) => Ok(self.odd_word()),
+        }
+    }
+
+    /// Passes over a word that is a number, but not a finite one.
+    #[cold]
+    fn odd_word(&mut self) -> f64 {
+        self.scan.skip_blanks();
+        let word = self.scan.clone().word();
+        let word = &word[..memchr::memchr(b'#', word).unwrap_or(word.len())];
+        self.scan.advance(word.len());
+        let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+        number.filter(|number: &f64| !number.is_finite()).unwrap_or(f64::NAN)
+    }
+
     #[cold]
     fn no_coordinate(&mut self, fault: NumberFault) -> Result<f64, ReadError> {
         let vertex = format!("vertex {}", self.row);
@@ -227,8 +252,7 @@ impl<'a> Reader<'a> {
             });
         }
         if self.rows.context.options.drop_non_finite {
-            self.scan.word();
-            return Ok(f64::NAN);
+            return Ok(self.odd_word());
         }
         let error = Fault::new("E-off-finite", place, found, "a finite number of at most 1.8e308").within(vertex);
         Err(error.advice(crate::audit::DROP_ADVICE).into())
@@ -272,9 +296,15 @@ impl<'a> Reader<'a> {
             *channel = self.channel()?;
         }
         let found = &found[..channels];
-        self.body.vertex_colors.note(found);
         match stored(found) {
-            Some(color) => Ok(color),
+            Some(color) if color[0].is_nan() => {
+                self.body.odd_color(place);
+                Ok(color)
+            }
+            Some(color) => {
+                self.body.vertex_colors.note(found);
+                Ok(color)
+            }
             None if self.rows.guessed_color => {
                 let found = format!("{} numbers", self.rows.layout.numbers());
                 let fault = Fault::new("E-off-row", place, found, "3 (x y z)").within(format!("vertex {}", self.row));
@@ -289,14 +319,17 @@ impl<'a> Reader<'a> {
             return Ok(Channel::Whole(number));
         }
         if self.row < self.rows.counts.vertices {
-            return Ok(Channel::Fraction(self.coordinate()?));
+            return Ok(Channel::Fraction(self.beside()?));
         }
         let place = self.scan.place();
         let found = self.scan.found();
-        self.scan.number_text().map(Channel::Fraction).map_err(|fault| {
-            let code = if fault == NumberFault::Syntax { "E-off-number" } else { "E-off-finite" };
-            Fault::new(code, place, found, "a channel of the colour of a face").into()
-        })
+        match self.scan.number_text() {
+            Ok(number) => Ok(Channel::Fraction(number)),
+            Err(NumberFault::Syntax) => {
+                Err(Fault::new("E-off-number", place, found, "a channel of the colour of a face").into())
+            }
+            Err(_) => Ok(Channel::Fraction(self.odd_word())),
+        }
     }
 
     fn face(&mut self) -> Result<(), ReadError> {
@@ -411,8 +444,10 @@ impl<'a> Reader<'a> {
                     *channel = self.channel()?;
                 }
                 let found = &found[..words];
-                let color = stored(found).ok_or_else(|| no_color(place, self.face_words()))?;
-                if corners >= 3 {
+                let color = stored(found).ok_or_else(|| no_color(place.clone(), self.face_words()))?;
+                if color[0].is_nan() {
+                    self.body.odd_color(place);
+                } else if corners >= 3 {
                     let face = self.body.faces.len();
                     self.body.face_colors.put(&mut self.memory, face, color, found)?;
                 }

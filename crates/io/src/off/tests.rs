@@ -78,12 +78,12 @@ fn colors_are_bytes_or_fractions() {
     // As Geomview takes whole numbers of vertices: fractions, if they can be.
     let ones = read_text(&tetrahedron("COFF", ["1 0 0"; 4], [""; 4]));
     assert_eq!(color(&ones, Domain::Vertex), Values::F64([1.0, 0.0, 0.0].repeat(4)));
-    assert_eq!(codes(&ones), ["W-off-color"]);
+    assert_eq!(codes(&ones), ["W-off-fractions"]);
 
     let faces = read_text(&tetrahedron("OFF", [""; 4], ["9 8 7", "1 0 0", "", "255 254 253 4"]));
     let bytes = vec![9, 8, 7, 255, 1, 0, 0, 255, 170, 170, 170, 255, 255, 254, 253, 4];
     assert_eq!(color(&faces, Domain::Face), Values::U8(bytes));
-    assert_eq!(codes(&faces), ["W-off-color"]);
+    assert_eq!(codes(&faces), ["W-off-grey"]);
     let mixed = read_text(&tetrahedron("OFF", [""; 4], ["0.25 0 1", "51 0 255", "1 1 0", "0.0 0.0 0.0"]));
     let numbers = vec![0.25, 0.0, 1.0, 0.2, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0];
     assert_eq!(color(&mixed, Domain::Face), Values::F64(numbers));
@@ -102,7 +102,7 @@ fn colors_are_bytes_or_fractions() {
 #[test]
 fn columns_that_look_like_colors_are_taken_as_colors() {
     let read = read_text(&tetrahedron("OFF", ["255 0 0 255", "0 255 0 255", "0 0 255 255", "1 2 3 4"], [""; 4]));
-    assert_eq!((column(&read, Domain::Vertex, COLOR).width(), codes(&read)), (4, vec!["W-off-color"]));
+    assert_eq!((column(&read, Domain::Vertex, COLOR).width(), codes(&read)), (4, vec!["W-off-columns"]));
     let normals = fault(&tetrahedron("OFF", ["0 0 1", "0 -1 0", "1 0 0", "0 0 1"], [""; 4]));
     assert_eq!((normals.0, normals.1, normals.2.as_str()), ("E-off-row", Place::line(4), "6 numbers"));
     let five = fault(&tetrahedron("OFF", ["1 2"; 4], [""; 4]));
@@ -157,7 +157,8 @@ fn results_do_not_depend_on_where_texts_are_cut() {
     }
     text += "more\nand more\n";
     let whole = read_text(&text);
-    assert_eq!(codes(&whole), ["W-off-degenerate", "W-off-trailing", "W-off-color"]);
+    let wanted = ["W-off-skipped", "W-off-trailing", "W-off-grey", "W-off-degenerate"];
+    assert_eq!(codes(&whole), wanted);
     let Geometry::PolyMesh(mesh) = geometry(&whole) else { panic!("polygons") };
     assert_eq!((mesh.positions().len(), mesh.face_count()), (60, 61));
     for size in [1, 30, 100, 777] {
@@ -176,11 +177,60 @@ fn results_do_not_depend_on_where_texts_are_cut() {
 }
 
 #[test]
+fn texts_of_shuffled_lines_are_the_same_wherever_they_are_cut() {
+    let text = "0 0 0 255 0 0\n1 0 0 9 9 9 # one\n\n0 1 0 0 nan 1\n0 0 2 1 1 1\n1 1 0 7 8 9\n# two\n3 0 1 2 255 0 0\n\
+        2 0 1\n4 0 1 2 3 0.5 0.5 nan\n3 1 1 2 7\n3 0 1 2\n3 0 1 4\nmore\n";
+    let mut read = 0;
+    crate::test_data::shuffled_lines(text, 4000, |rows| {
+        let text = format!("COFF\n5 5 0\n{rows}");
+        let cut = |size: usize| {
+            let cut = |from: usize| crate::text::cut(text.as_bytes(), from, size, crate::text::never_joined);
+            super::text::read_text(text.as_bytes(), &ReadContext::default(), cut)
+        };
+        let whole = cut(usize::MAX);
+        read += usize::from(whole.is_ok());
+        let whole = format!("{whole:?}");
+        for size in [1, 20, 40, 90] {
+            assert_eq!(format!("{:?}", cut(size)), whole, "{size}\n{text}");
+        }
+    });
+    assert!((400..3600).contains(&read), "{read}");
+}
+
+#[test]
+fn numbers_beside_positions_need_not_be_finite() {
+    let read = read_text(
+        "STCNOFF\n3 1 0\n0 0 0 nan 0 1 0.5 0 0 0 0\n1 0 0 0 0 -inf 0 NaN 0 1 1e999\n0 1 0 0 0 1 1 1 0 0 inf#x\n3 0 1 2 0 nan 1\n",
+    );
+    let found: Vec<_> = read.findings.iter().map(|one| (one.code, one.count, one.places[0].clone())).collect();
+    assert_eq!(found, [("W-off-finite", 3, Place::line(3)), ("W-off-color", 2, Place::line(4))]);
+    let colors = Values::F64(vec![0.5, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0]);
+    assert_eq!(column(&read, Domain::Vertex, COLOR).values(), &colors);
+    let normals = column(&read, Domain::Vertex, NORMAL);
+    assert!(normals.number(0, 0).is_nan() && normals.number(1, 2) == f64::NEG_INFINITY);
+    assert!(columns_of(geometry(&read), Domain::Face).unwrap().get(COLOR).is_none());
+
+    let nan = f32::NAN;
+    let file = big_endian(
+        "CNOFF BINARY\n",
+        &[
+            (&[3, 1, 0], &[0.0, 0.0, 0.0, 0.0, 0.0, nan, 0.5, 0.0, 0.0, 1.0]),
+            (&[], &[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, nan, 0.0, 0.0, 1.0]),
+            (&[], &[0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 1.0]),
+            (&[3, 0, 1, 2, 3], &[0.5, 0.25, f32::INFINITY]),
+        ],
+    );
+    let read = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
+    assert_eq!(codes(&read), ["W-off-finite", "W-off-color"]);
+    assert_eq!(column(&read, Domain::Vertex, COLOR).number(1, 0), 1.0);
+}
+
+#[test]
 fn degenerate_faces_are_placed_past_those_left_out() {
     let read = read_text("OFF\n3 5 0\n0 0 0\n1 0 0\n0 1 0\n\n1 0\n3 0 1 2\n0\n3 0 1 1\n# note\n3 2 2 1\n");
-    let only = read.findings.iter().next().unwrap();
-    let places: Vec<Place> = [7, 9, 10, 12].map(Place::line).to_vec();
-    assert_eq!((&only.places, only.count), (&places, 4));
+    let found: Vec<_> = read.findings.iter().map(|one| (one.code, &one.places[..], one.count)).collect();
+    let (skipped, kept) = ([7, 9].map(Place::line), [10, 12].map(Place::line));
+    assert_eq!(found, [("W-off-skipped", &skipped[..], 2), ("W-off-degenerate", &kept[..], 2)]);
 }
 
 /// Numbers, whole and floating, in big endian.
@@ -214,10 +264,10 @@ fn binary_files_are_big_endian() {
     let colors = Values::F64(vec![0.5, 0.25, 0.0, 1.0, grey, grey, grey, 1.0]);
     assert_eq!(column(&read, Domain::Face, COLOR).values(), &colors);
     assert_eq!(column(&read, Domain::Face, "colormap").values(), &Values::U32(vec![u32::MAX, 5]));
-    assert_eq!(codes(&read), ["W-off-degenerate", "W-off-trailing", "W-off-color"]);
-    let places = &read.findings.iter().next().unwrap().places;
+    assert_eq!(codes(&read), ["W-off-skipped", "W-off-trailing", "W-off-grey", "W-off-degenerate"]);
+    let places: Vec<Place> = read.findings.iter().map(|finding| finding.places[0].clone()).collect();
     let first_face = 27 + 12 + 72;
-    assert_eq!(places, &[Place::Byte(first_face + 36), Place::Byte(first_face + 52)]);
+    assert_eq!((&places[0], &places[3]), (&Place::Byte(first_face + 36), &Place::Byte(first_face + 52)));
     for (cut, code) in [(100, "E-off-claim"), (file.len() - 12, "E-off-truncated"), (30, "E-off-truncated")] {
         let error = crate::read(&file[..cut], &FORMAT, &ReadContext::default()).unwrap_err();
         assert_eq!(error.fault().unwrap().code, code);

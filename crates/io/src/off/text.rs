@@ -10,7 +10,7 @@ use super::counts::{Counts, counts, dimension};
 use super::header::{Header, header};
 use super::rows::{Reader, Rows, lines_with_words, words_left};
 use crate::memory::Memory;
-use crate::text::{Scanner, end_place, in_lines, line_place, never_joined, pieces, plain_text};
+use crate::text::{Scanner, end_place, in_lines, line_place, never_joined, pieces, plain_text, rows_before};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
@@ -41,7 +41,7 @@ pub(super) fn read_text(
     let (rows, vertices_joined) = rows(text, &mut scan, &header, dimension, counts, context)?;
     if rows.guessed_color {
         let message = "vertices have the columns of a colour that the keyword does not promise (COFF)";
-        findings.push("W-off-color", Severity::Warning, scan.place(), message);
+        findings.push("W-off-columns", Severity::Warning, scan.place(), message);
     }
     let start = scan.offset();
     let cuts = if vertices_joined { Vec::new() } else { cut(start) };
@@ -123,31 +123,21 @@ fn rows<'a>(
 /// Reads pieces at the same time, if every row has a line of its own.
 fn in_pieces<'a>(rows: &'a Rows<'a>, cuts: &[Range<usize>]) -> Result<Option<(Body, Memory<'a>)>, ReadError> {
     let (text, exec) = (rows.text, &rows.context.exec);
-    let lines = map_chunks(exec, cuts.len(), 1, |range| {
-        let piece = &cuts[range.start];
-        Ok::<_, ReadError>(lines_with_words(&text[..piece.end], piece.start, u64::MAX))
-    })?;
+    let counted = rows_before(exec, cuts, |piece| lines_with_words(&text[..piece.end], piece.start, u64::MAX))?;
     let wanted = rows.counts.vertices + rows.counts.faces;
-    if lines.iter().sum::<u64>() < wanted {
+    let all = counted.last().map_or(0, |(before, count)| before + count);
+    if all < wanted {
         return Ok(None);
     }
-    let mut before = 0;
-    let firsts: Vec<u64> = lines
-        .iter()
-        .map(|lines| {
-            before += lines;
-            before - lines
-        })
-        .collect();
     let read = map_chunks(exec, cuts.len(), 1, |range| {
-        let (piece, first) = (&cuts[range.start], firsts[range.start]);
+        let (piece, first) = (&cuts[range.start], counted[range.start].0);
         let mut reader = Reader::new(rows, Scanner::new(&text[..piece.end], piece.start), first);
         reader.faces_joined = Some(false);
         // What follows after the first row too many was told.
         if first <= wanted {
             reader.run()?;
         }
-        exec.progress(first as f64 / before.max(1) as f64);
+        exec.progress(first as f64 / all.max(1) as f64);
         Ok::<_, ReadError>((reader.body, reader.memory))
     })?;
     let mut memory = Memory::new(exec);

@@ -11,8 +11,9 @@ use super::header::{Element, Header, short};
 use super::plan::{Plan, Role};
 use super::rows::{Rows, check_list_values, drop_last, finite_fault, index_fault, polygon_fault};
 use super::types::{NO_INDEX, Type, float_index, with_values};
+use super::words::{Parse, coordinate, whole};
 use crate::memory::{Memory, make_room};
-use crate::text::{CountFault, NumberFault, Scanner, is_blank, never_joined, pieces};
+use crate::text::{CountFault, Scanner, is_blank, never_joined, pieces, rows_before};
 use crate::{Fault, ReadContext, ReadError};
 
 /// Reads the rows of all elements. Also returns where text begins behind the last row, if there is any. Places are
@@ -71,21 +72,11 @@ fn read_pieces(
     }
     // Each piece has to know which row its first line is.
     let exec = &context.exec;
-    let lines = map_chunks(exec, pieces.len(), 1, |range| {
-        Ok::<u64, ReadError>(pieces.get(range).unwrap_or(&[]).iter().map(|piece| filled_lines(text, piece)).sum())
-    })?;
-    let firsts: Vec<u64> = lines
-        .iter()
-        .scan(0, |sum, &count| {
-            let first = *sum;
-            *sum += count;
-            Some(first)
-        })
-        .collect();
+    let counted = rows_before(exec, pieces, |piece| filled_lines(text, piece))?;
     let parts = map_chunks(exec, pieces.len(), 1, |range| {
         let mut memory = Memory::new(exec);
         let index = range.start;
-        let (Some(piece), Some(&first), Some(&count)) = (pieces.get(index), firsts.get(index), lines.get(index)) else {
+        let (Some(piece), Some(&(first, count))) = (pieces.get(index), counted.get(index)) else {
             return Ok::<_, ReadError>(None);
         };
         let part = reader.piece(piece.clone(), first, count, exec, &mut memory)?;
@@ -104,11 +95,16 @@ fn read_pieces(
                 held.push(piece_memory);
             }
             Some(all) => {
-                all.iter_mut().zip(rows).try_for_each(|(rows, more)| rows.append(more, memory))?;
+                // Rows without lines are in every piece, and are counted once.
+                for ((rows, more), element) in all.iter_mut().zip(rows).zip(&reader.elements) {
+                    if !element.slots.is_empty() {
+                        rows.append(more, memory)?;
+                    }
+                }
             }
         }
     }
-    let found: u64 = lines.iter().sum();
+    let found = counted.last().map_or(0, |(before, count)| before + count);
     match all {
         Some(all) if found >= total => Ok((all, rest)),
         _ => Err(reader.missing(found).into()),
@@ -248,8 +244,7 @@ impl<'a> Reader<'a> {
                 Rows::with_room(reader.element, reader.plan, count as usize, memory)?
             } else {
                 let mut rows = Rows::with_room(reader.element, reader.plan, 0, memory)?;
-                // Rows of no lines are counted once.
-                rows.len = if first == 0 { reader.element.rows } else { 0 };
+                rows.len = reader.element.rows;
                 rows
             };
             while (before..after).contains(&line) && skip_blank_lines(&mut scan) {
@@ -418,7 +413,7 @@ impl<'a> Reader<'a> {
             }
         };
         // A digit and a blank each; only long lists are compared with the line that they are on.
-        let left = scan.rest().len() as u64 / 2;
+        let left = (self.text.len() - scan.offset()) as u64 / 2;
         if count > left || (count > 255 && count > scan.rest_of_line().len() as u64 / 2 + 1) {
             let fault = few_values(reader, start, row, number);
             return Err(fault.advice(format!("the list says that it has {count} numbers")).into());
@@ -453,113 +448,10 @@ fn first_not_finite(reader: &ElementReader<'_>, words: &[u8], point: DVec3) -> S
     point.to_array().into_iter().find(|number| !number.is_finite()).map_or_else(String::new, |found| found.to_string())
 }
 
-/// A coordinate as its type holds it; infinite where the type does not reach so far.
-#[inline]
-fn coordinate(scan: &mut Scanner<'_>, kind: Type) -> Result<f64, Box<Fault>> {
-    match kind {
-        Type::Float => f32::parse(scan).map(f64::from),
-        Type::Double => f64::parse(scan),
-        other => {
-            let (least, most) = other.bounds().unwrap_or((i64::MIN, i64::MAX));
-            whole_within(scan, least, most).map(|number| number as f64)
-        }
-    }
-}
-
-/// A number that is read from text.
-trait Parse: Sized {
-    /// The next word as a number. On failure the fault names it.
-    fn parse(scan: &mut Scanner<'_>) -> Result<Self, Box<Fault>>;
-}
-
-impl Parse for f64 {
-    #[inline]
-    fn parse(scan: &mut Scanner<'_>) -> Result<Self, Box<Fault>> {
-        scan.number().or_else(|fault| odd_number(scan, fault))
-    }
-}
-
-impl Parse for f32 {
-    #[inline]
-    fn parse(scan: &mut Scanner<'_>) -> Result<Self, Box<Fault>> {
-        let before = scan.clone();
-        let value = f64::parse(scan)?;
-        // The float nearest to the double is that nearest to the text, unless the double is halfway between two floats.
-        let halfway = value.to_bits() & 0x1fff_ffff == 0x1000_0000;
-        if halfway || (value != 0.0 && value.abs() < f64::from(Self::MIN_POSITIVE)) {
-            let word = before.clone().word();
-            if let Some(exact) = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()) {
-                return Ok(exact);
-            }
-        }
-        Ok(value as Self)
-    }
-}
-
-macro_rules! parse_whole {
-    ($($type:ty),*) => {
-        $(impl Parse for $type {
-            #[inline]
-            fn parse(scan: &mut Scanner<'_>) -> Result<Self, Box<Fault>> {
-                let ahead = scan.clone();
-                match scan.count() {
-                    Ok(count) if count <= Self::MAX as u64 => Ok(count as Self),
-                    _ => {
-                        *scan = ahead;
-                        whole_within(scan, i64::from(Self::MIN), i64::from(Self::MAX)).map(|number| number as Self)
-                    }
-                }
-            }
-        })*
-    };
-}
-
-parse_whole!(i8, u8, i16, u16, i32, u32);
-
-/// A whole number. `2.0` is one too.
-fn whole(scan: &mut Scanner<'_>) -> Result<f64, Box<Fault>> {
-    scan.skip_blanks();
-    let before = scan.clone();
-    scan.number()
-        .ok()
-        .filter(|number| number.fract() == 0.0)
-        .ok_or_else(|| Fault::new("E-ply-number", before.place(), before.found(), "a whole number"))
-}
-
-/// A whole number within bounds.
-fn whole_within(scan: &mut Scanner<'_>, least: i64, most: i64) -> Result<i64, Box<Fault>> {
-    scan.skip_blanks();
-    let before = scan.clone();
-    match whole(scan) {
-        Ok(number) if number >= least as f64 && number <= most as f64 => Ok(number as i64),
-        _ => {
-            let expected = format!("a whole number from {least} to {most}");
-            Err(Fault::new("E-ply-number", before.place(), before.found(), expected))
-        }
-    }
-}
-
-/// Infinity and what is no number, which columns may hold.
-#[cold]
-fn odd_number(scan: &mut Scanner<'_>, fault: NumberFault) -> Result<f64, Box<Fault>> {
-    let before = scan.clone();
-    let word = scan.word();
-    if fault == NumberFault::NotFinite {
-        let lower = word.to_ascii_lowercase();
-        let negative = lower.starts_with(b"-");
-        let size = if lower.windows(3).any(|part| part == b"inf") { f64::INFINITY } else { f64::NAN };
-        return Ok(if negative { -size } else { size });
-    }
-    if fault == NumberFault::Overflow {
-        // A position of this size is refused as one that is not finite, with its line.
-        return Ok(if word.starts_with(b"-") { f64::NEG_INFINITY } else { f64::INFINITY });
-    }
-    Err(Fault::new("E-ply-number", before.place(), before.found(), fault.to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_data::shuffled_lines;
     use shapeloom_core::{Diagnostic, Findings};
 
     const FILE: &str = "ply\nformat ascii 1.0\nelement none 3\nelement camera 1\nproperty list uchar float l\n\
@@ -646,6 +538,24 @@ mod tests {
     }
 
     #[test]
+    fn shuffled_lines_are_the_same_wherever_they_are_cut() {
+        let (head, body) = FILE.split_at(FILE.find("end_header\n").unwrap() + 11);
+        let mut read = 0;
+        shuffled_lines(body, 4000, |body| {
+            let text = format!("{head}{body}");
+            let cut =
+                |size| with_pieces(&text, Some(crate::text::cut(text.as_bytes(), head.len(), size, never_joined)));
+            let whole = cut(usize::MAX);
+            read += usize::from(whole.is_ok());
+            let whole = format!("{whole:?}");
+            for size in [1, 30, 60, 150] {
+                assert_eq!(format!("{:?}", cut(size)), whole, "{size}\n{text}");
+            }
+        });
+        assert!((400..3600).contains(&read), "{read}");
+    }
+
+    #[test]
     fn values_that_do_not_fit_are_named() {
         let code = |from: &str, to: &str| {
             let error = with_pieces(&FILE.replacen(from, to, 1), None).unwrap_err();
@@ -668,21 +578,5 @@ mod tests {
         assert_eq!(code("3 0 1 2 0", "3 0 1 18446744073709551617 0"), pair("E-ply-index", "18446744073709551617"));
         assert_eq!(code("3 0 1 2 0", "3 0").0, "E-ply-row");
         assert_eq!(code("3 0 1 2 0", "3000000 0 1 2 0").0, "E-ply-row");
-    }
-
-    #[test]
-    fn floats_are_rounded_once() {
-        let mut state = 1u64;
-        for _ in 0..100_000 {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            // Halfway between two floats, and a little above and below.
-            let float = f32::from_bits((state >> 33) as u32 & 0x7eff_ffff);
-            let middle = (f64::from(float) + f64::from(float.next_up())) / 2.0;
-            for text in [format!("{middle}"), format!("{middle}000000000000000000001"), format!("{float:e}")] {
-                let text = if text.contains('.') || text.contains('e') { text } else { text + ".0" };
-                let read = f32::parse(&mut Scanner::new(text.as_bytes(), 0)).unwrap();
-                assert_eq!(read.to_bits(), text.parse::<f32>().unwrap().to_bits(), "{text}");
-            }
-        }
     }
 }

@@ -65,6 +65,8 @@ impl Columns {
 struct FaceRows {
     /// Which element they are.
     index: usize,
+    /// Whether there is such an element, though it may have no rows.
+    there: bool,
     /// How many of the faces have a row there; others are of strips.
     rows: usize,
     skipped: Vec<u32>,
@@ -89,6 +91,7 @@ impl Builder<'_, '_> {
                 }
                 Role::Face => {
                     face.index = index;
+                    face.there = true;
                     face.rows = rows.len;
                     face.skipped = std::mem::take(&mut rows.skipped);
                     face.faces = std::mem::take(&mut rows.faces);
@@ -186,15 +189,15 @@ impl Builder<'_, '_> {
     fn skipped_faces(&mut self, face: &FaceRows) {
         let rows: Vec<usize> = face.skipped.iter().take(Findings::PLACES_KEPT).map(|&row| row as usize).collect();
         let message = "a face of fewer than three corners was left out";
-        self.degenerate(face.index, &rows, face.skipped.len(), message);
+        self.rows_left_out("W-ply-skipped", face.index, &rows, face.skipped.len(), message);
     }
 
     /// Remarks on so many rows, of which the first are named.
-    fn degenerate(&mut self, index: usize, rows: &[usize], count: usize, message: &str) {
+    fn rows_left_out(&mut self, code: &'static str, index: usize, rows: &[usize], count: usize, message: &str) {
         for (rank, &row) in rows.iter().take(Findings::PLACES_KEPT).enumerate() {
             let seen = if rank == 0 { count + 1 - rows.len().min(Findings::PLACES_KEPT) } else { 1 };
             let place = (self.place)(index, row);
-            self.findings.push_many("W-ply-degenerate", Severity::Warning, place, message, seen as u64);
+            self.findings.push_many(code, Severity::Warning, place, message, seen as u64);
         }
     }
 
@@ -234,7 +237,7 @@ impl Builder<'_, '_> {
         let place = |row: usize| (self.place)(index, row);
         let short_strips = strips::triangles(&list, self.vertices, &mut face.faces, self.memory, place)?;
         let message = "a strip of one or two vertices was left out";
-        self.degenerate(index, &short_strips, short_strips.len(), message);
+        self.rows_left_out("W-ply-strips", index, &short_strips, short_strips.len(), message);
         if element.rows > 0 {
             for (_, property) in element.properties.iter().enumerate().filter(|(at, _)| Some(*at) != corners) {
                 let what = format!("\"{}\" of triangle strips", short(&property.name));
@@ -273,7 +276,7 @@ impl Builder<'_, '_> {
             let message = "the file has no vertices";
             self.findings.push("W-ply-empty", Severity::Warning, Place::Whole, message);
             mesh_of(points, face.faces, vertex, Columns::default(), None)?
-        } else if face.faces.is_empty() {
+        } else if face.faces.is_empty() && !face.there {
             cloud_of(points, vertex)?
         } else {
             mesh_of(points, face.faces, vertex, face.columns, face.wedge)?

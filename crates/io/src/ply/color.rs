@@ -21,6 +21,30 @@ fn exact_float(intensity: f64) -> Option<f32> {
     candidates.into_iter().find(|&float| linear(f64::from(float)).to_bits() == intensity.to_bits())
 }
 
+/// The float that [`linear`] takes to an intensity that rounds to this one, if there is one.
+fn single(intensity: f32) -> Option<f32> {
+    let near = both_pieces(f64::from(intensity)).map(|value| value as f32);
+    let candidates = near.into_iter().flat_map(|near| [near, near.next_up(), near.next_down()]);
+    candidates.into_iter().find(|&float| (linear(f64::from(float)) as f32).to_bits() == intensity.to_bits())
+}
+
+/// A linear intensity in single precision as a fraction in sRGB in that precision.
+pub(super) fn single_fraction(intensity: f32) -> f32 {
+    single(intensity).unwrap_or_else(|| srgb(f64::from(intensity).abs()).copysign(f64::from(intensity)) as f32)
+}
+
+/// The type of fractions in sRGB that are read as intensities which round to these.
+pub(super) fn single_type(intensities: impl IntoIterator<Item = f32>) -> Type {
+    let exact = |intensity: f32| intensity.is_nan() || single(intensity).is_some();
+    if intensities.into_iter().all(exact) { Type::Float } else { Type::Double }
+}
+
+/// Whether a fraction in sRGB is that of a byte, by as much as single precision and the digits of texts may blur it.
+pub(super) fn is_byte(fraction: f64) -> bool {
+    let byte = 255.0 * fraction;
+    (-1e-3..=255.001).contains(&byte) && (byte - byte.round()).abs() <= 1e-3
+}
+
 /// The double that [`linear`] takes to this intensity to the last bit, or the nearest to it that is found.
 fn nearest_double(intensity: f64) -> f64 {
     let [near, straight] = both_pieces(intensity);

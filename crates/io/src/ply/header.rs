@@ -6,7 +6,7 @@ use shapeloom_core::{Category, Findings, Place, Severity};
 
 use super::types::Type;
 use crate::memory::{Growing, Memory};
-use crate::text::{CountFault, parse_count, quoted};
+use crate::text::{CountFault, lossy, parse_count, quoted};
 use crate::{Fault, ReadContext, ReadError};
 
 /// How the numbers of the body are laid down.
@@ -101,8 +101,8 @@ impl Header {
             layout: None,
             elements: Vec::new(),
             comments: Growing::default(),
-            element_names: HashSet::new(),
-            property_names: HashSet::new(),
+            element_names: Names::default(),
+            property_names: Names::default(),
             properties: 0,
             line: 1,
         };
@@ -197,13 +197,37 @@ impl<'a> HeaderLines<'a> {
     }
 }
 
+/// Names of which each is there once.
+#[derive(Default)]
+struct Names {
+    /// As the file has them.
+    bytes: HashSet<Vec<u8>>,
+    /// As the shape has them.
+    texts: HashSet<String>,
+}
+
+impl Names {
+    /// A name in bytes and as text, in which other bytes may have been replaced; none if it was there before. Two names
+    /// that only replacement has made the same are told apart by the line of the second.
+    fn new_one(&mut self, bytes: &[u8], text: &str, line: u64) -> Option<String> {
+        if !self.bytes.insert(bytes.to_vec()) {
+            return None;
+        }
+        let mut name = text.to_owned();
+        while !self.texts.insert(name.clone()) {
+            name.push_str(&format!("_line{line}"));
+        }
+        Some(name)
+    }
+}
+
 struct Parser {
     layout: Option<Layout>,
     elements: Vec<Element>,
     comments: Growing<String>,
-    element_names: HashSet<String>,
+    element_names: Names,
     /// Of the last element.
-    property_names: HashSet<String>,
+    property_names: Names,
     properties: usize,
     line: u64,
 }
@@ -236,7 +260,7 @@ impl Parser {
             // A line of nothing, as some editors leave.
             b"" => return Ok(()),
             b"comment" | b"obj_info" => {
-                let text = String::from_utf8_lossy(rest.get(1..).unwrap_or(&[]));
+                let text = lossy(rest.get(1..).unwrap_or(&[]), self.place(), findings);
                 let text = if keyword == b"comment" { text.into_owned() } else { format!("{OBJ_INFO}{text}") };
                 memory.take(text.len(), 1)?;
                 return Ok(self.comments.push(memory, text)?);
@@ -262,23 +286,23 @@ impl Parser {
             }
             b"element" => {
                 let (name, count) = (word(), word());
-                self.element(line, name, count, context, memory)?;
+                self.element(line, name, count, context, memory, findings)?;
             }
             b"property" => {
                 let mut parts = [word(), word(), word(), word()];
                 if parts[0] != b"list" {
                     parts[3] = &[];
                 }
-                self.property(parts, memory)?;
+                self.property(parts, memory, findings)?;
             }
             _ => {
                 let expected = "format, comment, obj_info, element, property or end_header";
                 return Err(self.fault("E-ply-header", keyword, expected).into());
             }
         }
-        match (keyword, word()) {
-            (_, b"") | (b"property", _) => Ok(()),
-            (_, more) => Err(self.fault("E-ply-header", more, "the end of the line").into()),
+        match word() {
+            b"" => Ok(()),
+            more => Err(self.fault("E-ply-header", more, "the end of the line").into()),
         }
     }
 
@@ -289,6 +313,7 @@ impl Parser {
         count: &[u8],
         context: &ReadContext,
         memory: &mut Memory<'_>,
+        findings: &mut Findings,
     ) -> Result<(), ReadError> {
         if self.layout.is_none() {
             return Err(self.no_format(line).into());
@@ -310,18 +335,23 @@ impl Parser {
                 .category(Category::OverLimit)
                 .into());
         };
-        let name = String::from_utf8_lossy(name).into_owned();
         self.count_one()?;
-        memory.take(2 * name.len() + size_of::<Element>() + 64, 1)?;
-        if !self.element_names.insert(name.clone()) {
-            return Err(self.fault("E-ply-duplicate", name.as_bytes(), "each element once").into());
-        }
-        self.property_names.clear();
+        memory.take(8 * name.len() + size_of::<Element>() + 128, 1)?;
+        let text = lossy(name, self.place(), findings);
+        let Some(name) = self.element_names.new_one(name, &text, self.line) else {
+            return Err(self.fault("E-ply-duplicate", name, "each element once").into());
+        };
+        self.property_names = Names::default();
         self.elements.push(Element { name, rows, line: self.line, properties: Vec::new() });
         Ok(())
     }
 
-    fn property(&mut self, parts: [&[u8]; 4], memory: &mut Memory<'_>) -> Result<(), ReadError> {
+    fn property(
+        &mut self,
+        parts: [&[u8]; 4],
+        memory: &mut Memory<'_>,
+        findings: &mut Findings,
+    ) -> Result<(), ReadError> {
         self.count_one()?;
         let kind = |word: &[u8]| {
             Type::from_name(word)
@@ -351,11 +381,11 @@ impl Parser {
             let expected = "an element before its properties";
             return Err(self.fault("E-ply-header", b"property", expected).into());
         }
-        let name = String::from_utf8_lossy(name).into_owned();
-        memory.take(2 * name.len() + size_of::<Property>() + 64, 1)?;
-        if !self.property_names.insert(name.clone()) {
-            return Err(self.fault("E-ply-duplicate", name.as_bytes(), "each property of an element once").into());
-        }
+        memory.take(8 * name.len() + size_of::<Property>() + 128, 1)?;
+        let text = lossy(name, self.place(), findings);
+        let Some(name) = self.property_names.new_one(name, &text, self.line) else {
+            return Err(self.fault("E-ply-duplicate", name, "each property of an element once").into());
+        };
         if let Some(element) = self.elements.last_mut() {
             element.properties.push(Property { name, kind, count });
         }
@@ -454,12 +484,27 @@ mod tests {
         property("float", "E-ply-header");
         property("float x y", "E-ply-header");
         property("list uchar int", "E-ply-header");
+        property("list uchar int x y", "E-ply-header");
         fails("format ascii 1.0\nelement a 1\nproperty int x\nproperty int x\n", "E-ply-duplicate", 5);
         fails("format ascii 1.0\nelement ver", "E-ply-truncated", 3);
         fails("format ascii 1.0\n", "E-ply-truncated", 2);
         fails(&format!("comment {}\n", "x".repeat(10_000)), "E-text-line", 2);
         let (_, findings) = parse(b"ply\nformat ascii 2.0\nend_header\n").unwrap();
         assert_eq!(findings.iter().next().unwrap().places, [Place::line(2)]);
+    }
+
+    #[test]
+    fn names_that_are_no_utf_8_are_told_and_told_apart() {
+        let text = b"ply\nformat ascii 1.0\ncomment \xe4\nelement \xff 1\nproperty int \xfc\nproperty int \xfd\n\
+            property int \xef\xbf\xbd\nelement \xfe 1\nend_header\n";
+        let (header, findings) = parse(text).unwrap();
+        let names: Vec<&str> = header.elements[0].properties.iter().map(|property| property.name.as_str()).collect();
+        assert_eq!(names, ["\u{fffd}", "\u{fffd}_line6", "\u{fffd}_line7"]);
+        assert_ne!(header.elements[0].name, header.elements[1].name);
+        let only = findings.iter().next().unwrap();
+        assert_eq!((only.code, &only.places[..]), ("W-text-encoding", &[3, 4, 5, 6, 8].map(Place::line)[..]));
+        let twice = text.iter().map(|&byte| if byte == 0xfd { 0xfc } else { byte }).collect::<Vec<_>>();
+        assert_eq!(parse(&twice).unwrap_err().code(), "E-ply-duplicate");
     }
 
     #[test]

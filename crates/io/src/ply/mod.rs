@@ -27,6 +27,7 @@ mod strips;
 #[cfg(test)]
 mod tests;
 mod types;
+mod words;
 mod write;
 
 use shapeloom_shape::Kind;

@@ -2,7 +2,7 @@
 
 use shapeloom_mesh::{Attributes, COLOR, Column, ListColumn, NORMAL, TEXCOORD, Values};
 
-use super::color::{fraction, fraction_type};
+use super::color::{fraction, fraction_type, is_byte, single_fraction, single_type};
 use super::encode::{Laid, Written};
 use super::types::{Type, with_values};
 use crate::color::srgb;
@@ -187,6 +187,11 @@ impl Property {
                     L::put((255.0 * if component < 3 { srgb(fraction) } else { fraction }).round() as u8, out);
                 }
             }
+            (Stored::SrgbFractions, Values::F32(values)) if self.kind == Type::Float => {
+                for (component, &number) in values.get(range).unwrap_or(&[]).iter().enumerate() {
+                    L::put(if component < 3 { single_fraction(number) } else { number }, out);
+                }
+            }
             (Stored::SrgbFractions, _) => {
                 for component in 0..width {
                     let number = column.number(element, component);
@@ -226,8 +231,23 @@ fn property(columns: &[&Column], lose: &mut impl FnMut(&str, &str)) -> Option<Pr
             let names = named(&["red", "green", "blue", "alpha"][..width]);
             let (kind, stored) = match kind {
                 Type::Float => {
-                    lose(COLOR, "linear colours in single precision were rounded to bytes as sRGB");
-                    (Type::Uchar, Stored::SrgbBytes)
+                    let values = || {
+                        columns.iter().flat_map(|column| match column.values() {
+                            Values::F32(values) => values.iter().enumerate(),
+                            _ => [].iter().enumerate(),
+                        })
+                    };
+                    let is_color = |at: usize| at % width < 3;
+                    let byte = |(at, &value): (usize, &f32)| {
+                        let value = f64::from(value);
+                        is_byte(if is_color(at) && value > 0.0 { srgb(value) } else { value })
+                    };
+                    if values().all(byte) {
+                        (Type::Uchar, Stored::SrgbBytes)
+                    } else {
+                        let colors = values().filter(|(at, _)| is_color(*at)).map(|(_, &value)| value);
+                        (single_type(colors), Stored::SrgbFractions)
+                    }
                 }
                 Type::Double => {
                     let colors = fraction_type(columns.iter().flat_map(|column| {

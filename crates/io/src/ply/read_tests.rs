@@ -93,7 +93,7 @@ fn everything_has_its_place() {
     let wedge = mesh.attribute(Domain::Wedge, TEXCOORD).unwrap();
     assert_eq!((wedge.len(), wedge.number(1, 1), wedge.number(6, 1)), (7, 0.5, 8.0));
     let only = findings.iter().next().unwrap();
-    assert_eq!((only.code, only.count, &only.places[..]), ("W-ply-degenerate", 1, &[Place::line(45)][..]));
+    assert_eq!((only.code, only.count, &only.places[..]), ("W-ply-skipped", 1, &[Place::line(45)][..]));
     assert_eq!(EVERYTHING.split('\r').nth(44).unwrap(), "2 2 0 1 0 0 0 0 0 0");
 }
 
@@ -172,10 +172,7 @@ fn strips_are_triangles() {
     }));
     let found = read_text(&text("5 0 1 2 -1 3\n4 -1 -1 0 1\n", 2)).unwrap();
     let only = found.findings.iter().next().unwrap();
-    assert_eq!(
-        (only.code, only.count, &only.places[..]),
-        ("W-ply-degenerate", 2, &[Place::line(15), Place::line(16)][..])
-    );
+    assert_eq!((only.code, only.count, &only.places[..]), ("W-ply-strips", 2, &[Place::line(15), Place::line(16)][..]));
     let error = read_text(&text("3 0 1 5\n", 1)).unwrap_err();
     assert!(error.to_string().starts_with("x.ply: line 15: strip 0: found 5, expected"), "{error}");
 }
@@ -190,7 +187,9 @@ fn clouds_and_empty_files_are_told_apart() {
         (Kind::TriMesh, "W-ply-empty")
     );
     let found = read_text(&(head.replace('N', "1") + "1 2 3\nx")).unwrap();
-    assert_eq!(found.shape.parts[0].geometry.kind(), Kind::PointCloud);
+    assert_eq!(found.shape.parts[0].geometry.kind(), Kind::TriMesh);
+    let alone = head.replace('N', "1").replace("element face 0\nproperty list uchar int vertex_indices\n", "");
+    assert_eq!(read_text(&(alone + "1 2 3\n")).unwrap().shape.parts[0].geometry.kind(), Kind::PointCloud);
     let only = found.findings.iter().next().unwrap();
     assert_eq!((only.code, &only.places[..]), ("W-ply-trailing", &[Place::line(11)][..]));
     let none = read_text("ply\nformat ascii 1.0\nend_header\n").unwrap();
@@ -298,7 +297,8 @@ fn binary_rows_of_all_layouts_are_read_alike() {
             let found = read(&bytes, &FORMAT, &ReadContext::default()).unwrap();
             assert_eq!(found.shape, shape, "{layout} {count} {item}");
             // Every skipped face has its own place.
-            assert_eq!(found.findings.iter().next().unwrap().count, 200 + degenerate(&shape));
+            let counts: Vec<u64> = found.findings.iter().map(|one| one.count).collect();
+            assert_eq!(counts, [200, degenerate(&shape)]);
         }
     }
 }
@@ -401,9 +401,9 @@ fn faces_that_were_left_out_do_not_shift_the_places_of_others() {
                 element face 4\nproperty list uchar int vertex_indices\nend_header\n\
                 0 0 0\n1 0 0\n0 1 0\n2 0 1\n3 0 1 1\n1 0\n3 2 2 1\n";
     let found = read_text(text).unwrap();
-    let only = found.findings.iter().next().unwrap();
-    let lines = [13, 15, 14, 16].map(Place::line);
-    assert_eq!((only.code, only.count, &only.places[..]), ("W-ply-degenerate", 4, &lines[..]));
+    let remarks: Vec<_> = found.findings.iter().map(|one| (one.code, one.count, &one.places[..])).collect();
+    let (skipped, kept) = ([13, 15].map(Place::line), [14, 16].map(Place::line));
+    assert_eq!(remarks, [("W-ply-skipped", 2, &skipped[..]), ("W-ply-degenerate", 2, &kept[..])]);
     // The same rows in binary, where a block of triangles is read at once: a face of two corners among them, its missing
     // bytes at the end of the file.
     let (head, _) = text.split_once("end_header\n").unwrap();
@@ -417,7 +417,7 @@ fn faces_that_were_left_out_do_not_shift_the_places_of_others() {
     assert_eq!(mesh.triangles(), [[0, 1, 2]]);
     let places: Vec<(&str, &Place)> = found.findings.iter().map(|one| (one.code, &one.places[0])).collect();
     let at = |from_end: usize| Place::Byte((bytes.len() - from_end) as u64);
-    assert_eq!(places, [("W-ply-trailing", &at(4)), ("W-ply-degenerate", &at(13))]);
+    assert_eq!(places, [("W-ply-trailing", &at(4)), ("W-ply-skipped", &at(13))]);
     // The first number that is no index, in a block of triangles.
     let mut wrong = bytes.clone();
     wrong[bytes.len() - 26 + 13] = 3;
@@ -447,4 +447,55 @@ fn what_has_no_place_beside_others_is_named() {
     let names: Vec<&str> = again.tables.iter().map(|table| table.name.as_str()).collect();
     assert_eq!((names, again.comments.len()), (vec!["face", "a_b"], 2));
     assert_eq!(again.parts, shape.parts);
+}
+
+#[test]
+fn linear_colors_in_single_precision_survive() {
+    let positions: Vec<DVec3> = (0..200).map(|i| DVec3::new(f64::from(i), 0.0, 0.0)).collect();
+    let written_as = |colors: Vec<f32>| {
+        let mut cloud = shapeloom_mesh::PointCloud::new(positions.clone());
+        cloud.insert_attribute(Column::try_new(COLOR, 4, Values::F32(colors)).unwrap()).unwrap();
+        let (file, losses) = written(&Shape::new(shapeloom_shape::Part::new(cloud)), Encoding::Binary);
+        assert!(losses.is_empty(), "{losses:?}");
+        let again = crate::read(&file, &super::FORMAT, &ReadContext::default()).unwrap().shape;
+        let Geometry::PointCloud(cloud) = &*again.parts[0].geometry else { panic!("points") };
+        (cloud.attributes().get(COLOR).unwrap().values().clone(), String::from_utf8_lossy(&file).into_owned())
+    };
+    let colors: Vec<f32> = (0..800).map(|i| (i as f32 * 0.377).fract() * if i == 9 { 7.0 } else { 1.0 }).collect();
+    let (found, file) = written_as(colors.clone());
+    let Values::F64(numbers) = found else { panic!("fractions") };
+    assert!(file.contains("property double red"));
+    assert_eq!(numbers.iter().map(|&number| number as f32).collect::<Vec<_>>(), colors);
+    // What came from floats goes into floats.
+    let floats = |i: usize| ((i as f64 / 801.0) as f32, i % 4 == 3);
+    let linear =
+        |(float, alpha): (f32, bool)| if alpha { float } else { crate::color::linear(f64::from(float)) as f32 };
+    let colors: Vec<f32> = (0..800).map(floats).map(linear).collect();
+    let (found, file) = written_as(colors.clone());
+    let Values::F64(numbers) = found else { panic!("fractions") };
+    assert!(file.contains("property float red"));
+    assert_eq!(numbers.iter().map(|&number| number as f32).collect::<Vec<_>>(), colors);
+    // Bytes that became light are bytes again.
+    let bytes: Vec<u8> = (0..800u32).map(|i| (i * 7) as u8).collect();
+    let light = bytes.iter().enumerate().map(|(at, &byte)| (byte, at % 4 == 3)).map(|(byte, alpha)| {
+        let fraction = f64::from(byte) / 255.0;
+        (if alpha { fraction } else { crate::color::linear(fraction) }) as f32
+    });
+    assert_eq!(written_as(light.collect()).0, Values::U8(bytes));
+}
+
+#[test]
+fn meshes_without_faces_stay_meshes() {
+    let points = vec![DVec3::ZERO, DVec3::X];
+    let mesh =
+        Shape::new(shapeloom_shape::Part::new(shapeloom_mesh::TriMesh::try_new(points.clone(), vec![]).unwrap()));
+    let cloud = Shape::new(shapeloom_shape::Part::new(shapeloom_mesh::PointCloud::new(points)));
+    for shape in [mesh, cloud] {
+        for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::BinaryBigEndian] {
+            let (file, losses) = written(&shape, encoding);
+            let again = crate::read(&file, &super::FORMAT, &ReadContext::default()).unwrap();
+            assert!(losses.is_empty() && again.findings.is_empty());
+            assert_eq!(again.shape.parts[0].geometry, shape.parts[0].geometry);
+        }
+    }
 }

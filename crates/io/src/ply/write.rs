@@ -44,6 +44,8 @@ struct File<'s> {
     comments: Vec<&'s str>,
     vertices: usize,
     faces: usize,
+    /// Whether some part is a mesh, though it may have no faces: without the element it would come back as points.
+    has_faces: bool,
     edges: usize,
     position: Type,
     /// The type of the number of corners.
@@ -78,6 +80,11 @@ impl<'s> File<'s> {
             comments: Vec::new(),
             vertices,
             faces: parts.iter().map(|part| face_count(part)).sum(),
+            has_faces: parts.iter().any(|part| match &**part {
+                Geometry::TriMesh(mesh) => !mesh.positions().is_empty(),
+                Geometry::PolyMesh(mesh) => !mesh.positions().is_empty(),
+                _ => false,
+            }),
             edges: parts.iter().map(|part| edge_count(part)).sum(),
             position: Type::of_floats(coordinates),
             corners: count_type(most),
@@ -105,7 +112,7 @@ impl<'s> File<'s> {
         let has_list = |names: &[&str]| names.iter().any(|name| table.columns.list(name).is_some());
         let taken = match name.as_str() {
             "" | "vertex" => true,
-            "face" => self.faces > 0 || has_list(&CORNERS),
+            "face" => self.has_faces || has_list(&CORNERS),
             "tristrips" => has_list(&CORNERS),
             "edge" => self.edges > 0 || ENDS.iter().all(|name| table.columns.get(name).is_some()),
             _ => false,
@@ -170,7 +177,7 @@ impl<'s> File<'s> {
             out.push_str(&format!("property {} {axis}\n", self.position.name()));
         }
         self.vertex.declare(&mut out);
-        if self.faces > 0 {
+        if self.has_faces {
             out.push_str(&format!("element face {}\n", self.faces));
             out.push_str(&format!("property list {} int vertex_indices\n", self.corners.name()));
             if let Some((count, number)) = self.wedge {

@@ -12,7 +12,8 @@ use super::binary::too_many;
 use super::weld::{BATCH, Welder};
 use crate::audit::degenerate_faces;
 use crate::memory::{Growing, Memory};
-use crate::text::{NumberFault, Scanner, end_place, in_lines, line_place, pieces, plain_text};
+use crate::parts::most_parts;
+use crate::text::{NumberFault, Scanner, end_place, in_lines, line_place, lossy, pieces, plain_text};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 /// How far into a file words are looked for that tell text from binary.
@@ -62,7 +63,22 @@ struct Run {
 #[derive(Default)]
 struct Read {
     runs: Vec<Run>,
+    /// How many solids begin here.
+    solids: u64,
     findings: Findings,
+}
+
+/// How reading a piece ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum End {
+    /// Within a solid, after one of its facets: the next piece goes on there.
+    Within,
+    /// After the end of a solid.
+    Between,
+    /// Before something that is no STL: all that follows is passed over.
+    Stopped,
+    /// Before a fault.
+    Fault,
 }
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
@@ -76,24 +92,15 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
 
 /// The file in pieces, each of which ends after a facet or with the text.
 pub(super) fn read_pieces(text: &[u8], cuts: &[Range<usize>], context: &ReadContext) -> Result<ReadShape, ReadError> {
-    let exec = &context.exec;
-    let read = map_chunks(exec, cuts.len(), 1, |range| {
-        let piece = cuts[range.start].clone();
-        let mut reader = Reader {
-            scan: Scanner::new(&text[..piece.end], piece.start),
-            text,
-            context,
-            memory: Memory::new(exec),
-            // Where a piece begins that is not the first, a facet has ended and its solid has not.
-            open: range.start > 0,
-            read: Read::default(),
-        };
-        if reader.open {
-            reader.read.runs.push(Run::default());
+    let apart = if cuts.len() > 1 { read_apart(text, cuts, context)? } else { None };
+    let read = match apart {
+        Some(read) => read,
+        None => {
+            let mut reader = Reader::new(text, 0..text.len(), context);
+            reader.run()?;
+            vec![(reader.read, reader.memory)]
         }
-        reader.run()?;
-        Ok::<_, ReadError>((reader.read, reader.memory))
-    })?;
+    };
     let mut findings = Findings::default();
     let (mut runs, mut held) = (Vec::new(), Vec::new());
     for (read, memory) in read {
@@ -116,6 +123,45 @@ pub(super) fn read_pieces(text: &[u8], cuts: &[Range<usize>], context: &ReadCont
     }
     let shape = Shape { parts, ..Shape::default() };
     Ok(ReadShape { findings: findings.with_places(|place| line_place(text, place)), ..ReadShape::new(shape) })
+}
+
+/// Reads pieces at the same time, each as if a facet had ended before it and its solid had not. None where that is not
+/// so: then only reading in a row tells what the text says.
+fn read_apart<'a>(
+    text: &'a [u8],
+    cuts: &[Range<usize>],
+    context: &'a ReadContext,
+) -> Result<Option<Vec<(Read, Memory<'a>)>>, ReadError> {
+    let read = map_chunks(&context.exec, cuts.len(), 1, |range| {
+        let mut reader = Reader::new(text, cuts[range.start].clone(), context);
+        if range.start > 0 {
+            reader.open = true;
+            reader.read.runs.push(Run::default());
+        }
+        // A fault counts only if the pieces before it do not say that nothing is read from here on.
+        let end = match reader.run() {
+            Err(ReadError::Input(_)) => End::Fault,
+            end => end?,
+        };
+        Ok::<_, ReadError>((reader.read, reader.memory, end))
+    })?;
+    let mut found = Vec::new();
+    let (mut solids, last) = (0, read.len() - 1);
+    for (index, (read, memory, end)) in read.into_iter().enumerate() {
+        solids += read.solids;
+        found.push((read, memory));
+        match end {
+            End::Stopped => break,
+            End::Within => {}
+            End::Between if index == last => {}
+            End::Between | End::Fault => return Ok(None),
+        }
+    }
+    Ok((solids <= most_solids(text, context)).then_some(found))
+}
+
+fn most_solids(text: &[u8], context: &ReadContext) -> u64 {
+    context.limits.max_elements.min(most_parts(text.len()) as u64)
 }
 
 /// A solid as a part.
@@ -176,8 +222,13 @@ struct Reader<'a> {
     read: Read,
 }
 
-impl Reader<'_> {
-    fn run(&mut self) -> Result<(), ReadError> {
+impl<'a> Reader<'a> {
+    fn new(text: &'a [u8], piece: Range<usize>, context: &'a ReadContext) -> Self {
+        let scan = Scanner::new(&text[..piece.end], piece.start);
+        Self { scan, text, context, memory: Memory::new(&context.exec), open: false, read: Read::default() }
+    }
+
+    fn run(&mut self) -> Result<End, ReadError> {
         let mut polled = 0;
         while self.next_word() {
             let at = self.scan.offset();
@@ -195,34 +246,35 @@ impl Reader<'_> {
                 }
             } else if self.take(b"endsolid") {
                 if !self.open {
-                    self.note("W-stl-solid", at, "an end of a solid without its start was passed over");
+                    self.note("W-stl-end", at, "an end of a solid without its start was passed over");
                 }
                 self.open = false;
                 self.scan.next_line();
             } else if self.take(b"solid") {
-                let name = String::from_utf8_lossy(self.scan.rest_of_line()).into_owned();
+                let place = Place::Byte(at as u64);
+                let name = lossy(self.scan.rest_of_line(), place, &mut self.read.findings).into_owned();
                 self.begin(at, Some(name))?;
                 self.scan.next_line();
             } else if self.open {
                 return Err(self.expected_at(at, "facet or endsolid"));
             } else {
                 self.note("W-stl-trailing", at, "what follows after the last solid was not read");
-                return Ok(());
+                return Ok(End::Stopped);
             }
         }
         if self.open && self.scan.offset() >= self.text.len() {
             self.note(
-                "W-stl-solid",
+                "W-stl-open",
                 self.text.len(),
                 "the last solid does not end with endsolid; the file may be cut off",
             );
         }
-        Ok(())
+        Ok(if self.open { End::Within } else { End::Between })
     }
 
     fn begin(&mut self, at: usize, name: Option<String>) -> Result<(), ReadError> {
         if self.open {
-            self.note("W-stl-solid", at, "a solid begins before the one before it has ended");
+            self.note("W-stl-nested", at, "a solid begins before the one before it has ended");
             // A solid of no bytes but its first line would take more memory than the file has bytes by far.
             if let Some(run) = self.read.runs.last_mut().filter(|run| run.facets.is_empty() && run.begins.is_some()) {
                 run.begins = name;
@@ -231,11 +283,13 @@ impl Reader<'_> {
         } else if name.is_none() {
             self.note("W-stl-solid", at, "facets without the word solid before them");
         }
-        if self.read.runs.len() as u64 >= self.context.limits.max_elements {
-            let most = format!("at most {} solids", self.context.limits.max_elements);
-            let fault = Fault::new("E-stl-limit", Place::Byte(at as u64), "another solid", most);
+        let most = most_solids(self.text, self.context);
+        if self.read.solids >= most {
+            let expected = format!("at most {most} solids in a file of this length");
+            let fault = Fault::new("E-stl-limit", Place::Byte(at as u64), "another solid", expected);
             return Err(fault.category(Category::OverLimit).into());
         }
+        self.read.solids += 1;
         let name = name.unwrap_or_default();
         self.memory.take(1, size_of::<Run>() + size_of::<Part>() + 512 + name.len())?;
         self.read.runs.push(Run { begins: Some(name), ..Run::default() });

@@ -1,11 +1,12 @@
 //! Files made by hand, and text cut anywhere.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Affine, Deviation, Exec, Place, Report, Threads};
+use shapeloom_core::{Affine, Category, Deviation, Diagnostic, Exec, Place, Report, Threads};
 use shapeloom_mesh::{COLOR, Column, Domain, TriMesh, Values};
 use shapeloom_shape::{Geometry, Part, Shape, UpAxis};
 
 use super::FORMAT;
+use crate::test_data::shuffled_lines;
 use crate::{Encoding, ReadContext, ReadShape, Sniff, WriteContext, WriteOptions, read};
 
 /// Facets with their last two bytes, and a header that begins so.
@@ -103,13 +104,74 @@ fn solids_are_parts_wherever_the_text_is_cut() {
     let place = Place::line(line + 1 + 31);
     assert_eq!(codes(&whole), [("W-stl-normal", place.clone(), 1), ("W-stl-degenerate", place, 1)]);
     for size in [1, 50, 300, 1000] {
-        let cuts = crate::text::cut(text.as_bytes(), 0, size, super::ascii::inside_facet);
-        assert!(cuts.len() > 2);
-        let found = super::ascii::read_pieces(text.as_bytes(), &cuts, &ReadContext::default()).unwrap();
-        assert_eq!(found, whole);
+        assert!(crate::text::cut(text.as_bytes(), 0, size, super::ascii::inside_facet).len() > 2);
+        assert_eq!(cut_into(&text, size).unwrap(), whole);
     }
     let exec = Exec::default().with_threads(Threads::Sequential);
     assert_eq!(read_as(text.as_bytes(), &ReadContext { exec, ..ReadContext::default() }), whole);
+}
+
+/// A text read in pieces of about a size.
+fn cut_into(text: &str, size: usize) -> Result<ReadShape, crate::ReadError> {
+    let cuts = crate::text::cut(text.as_bytes(), 0, size, super::ascii::inside_facet);
+    super::ascii::read_pieces(text.as_bytes(), &cuts, &ReadContext::default())
+}
+
+#[test]
+fn nothing_after_the_last_solid_is_read_wherever_the_text_is_cut() {
+    let text = solids();
+    let facets = text.split_once('\n').unwrap().1;
+    for more in [format!("junk\n{facets}"), format!("junk\n{text}{text}"), "junk\nfacet\nendfacet\nsolid\n".repeat(9)] {
+        let text = format!("{text}{more}");
+        let whole = cut_into(&text, usize::MAX).unwrap();
+        assert_eq!(whole.shape.parts.len(), 3);
+        for size in [1, 50, 300, 1000] {
+            assert_eq!(cut_into(&text, size).unwrap(), whole, "{size}");
+        }
+    }
+}
+
+#[test]
+fn texts_of_shuffled_lines_are_the_same_wherever_they_are_cut() {
+    let facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let text =
+        format!("solid a\n{facet}{facet}endsolid a\nsolid b\n{facet}\nendsolid\njunk\nfacet normal 0 0\n{facet}");
+    let mut read = 0;
+    shuffled_lines(&text, 4000, |text| {
+        let whole = cut_into(text, usize::MAX);
+        read += usize::from(whole.is_ok());
+        for size in [1, 70, 150, 300] {
+            assert_eq!(cut_into(text, size), whole, "{size}\n{text}");
+        }
+    });
+    assert!((400..3600).contains(&read), "{read}");
+}
+
+#[test]
+fn floods_of_solids_are_refused() {
+    let many = "solid\nendsolid\n".repeat(40_000);
+    let facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop\nendfacet\n";
+    // Neither half is too many.
+    let half = "solid\nendsolid\n".repeat(30_000);
+    let halves = format!("{half}solid\n{facet}{facet}endsolid\n{half}");
+    for text in [many.clone(), format!("{many}solid\n{facet}{facet}"), halves] {
+        for size in [usize::MAX, 500_000, 100] {
+            let error = cut_into(&text, size).unwrap_err();
+            assert_eq!((error.code(), error.category()), ("E-stl-limit", Category::OverLimit));
+        }
+    }
+    assert_eq!(cut_into(&"solid\nendsolid\n".repeat(20_000), 100).unwrap().shape.parts.len(), 20_000);
+}
+
+#[test]
+fn names_that_are_no_utf_8_are_told() {
+    let found = read_as(
+        b"solid gr\xfcn\nfacet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop \
+        endfacet\nendsolid\n",
+        &ReadContext::default(),
+    );
+    assert_eq!(found.shape.parts[0].name, "gr\u{fffd}n");
+    assert_eq!(codes(&found), [("W-text-encoding", Place::line(1), 1)]);
 }
 
 #[test]

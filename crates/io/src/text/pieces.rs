@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use shapeloom_core::{Exec, Threads};
+use shapeloom_core::parallel::map_chunks;
+use shapeloom_core::{Exec, Stop, Threads};
 
 /// Large enough that what a piece costs apart from its text does not count.
 const PIECE: usize = 1 << 20;
@@ -42,6 +43,22 @@ pub(crate) fn cut(text: &[u8], from: usize, size: usize, joined: fn(&[u8]) -> bo
         start = end;
     }
     found
+}
+
+/// For each piece how many rows come before it and how many it has, by a count of the rows of a piece: reading a piece
+/// needs to know which row its first is.
+pub(crate) fn rows_before(
+    exec: &Exec,
+    cuts: &[Range<usize>],
+    count: impl Fn(&Range<usize>) -> u64 + Sync,
+) -> Result<Vec<(u64, u64)>, Stop> {
+    let counts = map_chunks(exec, cuts.len(), 1, |range| Ok::<_, Stop>(cuts[range].iter().map(&count).sum::<u64>()))?;
+    let mut before = 0;
+    let with_sum = |count| {
+        before += count;
+        (before - count, count)
+    };
+    Ok(counts.into_iter().map(with_sum).collect())
 }
 
 /// No line goes on in the next.
