@@ -13,7 +13,6 @@ use shapeloom_core::{Exec, Stop};
 /// gives no triangle of zero area. Where no ear is left (the outline crosses or touches itself) a convex corner is cut
 /// all the same. Cost: linear for convex outlines; else each look at a corner takes the reflex corners near its triangle,
 /// found by a grid, and a corner that is no ear is looked at again only when the corner that stood in its way is gone.
-/// What is left is a walk around the ring for each ear in the worst case, a few nanoseconds a step.
 pub(crate) fn clip_ears(outline: &[DVec2], exec: &Exec, out: &mut Vec<[u32; 3]>) -> Result<bool, Stop> {
     let count = outline.len();
     if count < 3 {
@@ -23,44 +22,45 @@ pub(crate) fn clip_ears(outline: &[DVec2], exec: &Exec, out: &mut Vec<[u32; 3]>)
     let mut simple = true;
     let mut at = 0usize;
     let mut left = count;
-    let mut tried = 0;
     let mut work = 0usize;
     while left > 3 {
-        let forced = tried >= left;
-        if forced {
-            simple = false;
-            at = ring.least_bad(at, left);
-        }
         work += 1;
         if work > 1 << 14 || ring.looked_at > 1 << 18 {
             exec.check()?;
             work = 0;
             ring.looked_at = 0;
         }
-        if forced || ring.is_ear(at) {
-            out.push([ring.previous[at] as u32, at as u32, ring.next[at] as u32]);
-            ring.clip(at);
-            left -= 1;
-            tried = 0;
-            // Going on past the neighbour spreads the ears and avoids fans of slivers.
-            at = ring.next[ring.next[at]];
-        } else {
-            tried += 1;
-            at = ring.next[at];
+        match ring.candidates.next(at) {
+            Some(corner) if !ring.is_ear(corner) => continue,
+            Some(corner) => at = corner,
+            None => {
+                // Where the outline crosses itself a convex corner is cut all the same, else any.
+                simple = false;
+                at = ring.convex.next(at).unwrap_or(at);
+            }
         }
+        out.push([ring.previous[at] as u32, at as u32, ring.next[at] as u32]);
+        ring.clip(at);
+        left -= 1;
+        // Going on past the neighbour spreads the ears and avoids fans of slivers.
+        at = ring.next[ring.next[at]];
     }
     out.push([ring.previous[at] as u32, at as u32, ring.next[at] as u32]);
     Ok(simple && ring.turn(at) == Ordering::Greater)
 }
 
-/// The corners that are left, as a ring, with those that are not convex marked.
+/// The corners that are left, as a ring in the order of their numbers.
 struct Ring<'a> {
     outline: &'a [DVec2],
     previous: Vec<usize>,
     next: Vec<usize>,
-    reflex: Vec<bool>,
-    /// For a corner that was found to be no ear, the reflex corner in its way.
-    in_the_way: Vec<u32>,
+    /// Convex corners.
+    convex: Marks,
+    /// Convex corners that may be ears: no reflex corner is known that is in the way.
+    candidates: Marks,
+    /// For a reflex corner the first of the corners whose triangles it was found in, and for each of those the next.
+    first_blocked: Vec<u32>,
+    next_blocked: Vec<u32>,
     grid: Grid,
     /// How many reflex corners were looked at.
     looked_at: usize,
@@ -71,14 +71,24 @@ const NOTHING: u32 = u32::MAX;
 impl<'a> Ring<'a> {
     fn new(outline: &'a [DVec2]) -> Self {
         let count = outline.len();
-        let previous = (0..count).map(|i| (i + count - 1) % count).collect();
-        let next = (0..count).map(|i| (i + 1) % count).collect();
-        let in_the_way = vec![NOTHING; count];
-        let mut ring =
-            Self { outline, previous, next, reflex: Vec::new(), in_the_way, grid: Grid::default(), looked_at: 0 };
-        ring.reflex = (0..count).map(|corner| ring.turn(corner) != Ordering::Greater).collect();
-        let reflex = (0..count as u32).filter(|&corner| ring.reflex[corner as usize]);
-        ring.grid = Grid::new(outline, reflex.collect());
+        let mut ring = Self {
+            outline,
+            previous: (0..count).map(|i| (i + count - 1) % count).collect(),
+            next: (0..count).map(|i| (i + 1) % count).collect(),
+            convex: Marks::new(count),
+            candidates: Marks::new(count),
+            first_blocked: vec![NOTHING; count],
+            next_blocked: vec![NOTHING; count],
+            grid: Grid::default(),
+            looked_at: 0,
+        };
+        let (convex, reflex): (Vec<u32>, Vec<u32>) =
+            (0..count as u32).partition(|&corner| ring.turn(corner as usize) == Ordering::Greater);
+        for corner in convex {
+            ring.convex.set(corner as usize, true);
+            ring.candidates.set(corner as usize, true);
+        }
+        ring.grid = Grid::new(outline, reflex);
         ring
     }
 
@@ -86,59 +96,112 @@ impl<'a> Ring<'a> {
         orient2d(self.outline[self.previous[corner]], self.outline[corner], self.outline[self.next[corner]])
     }
 
-    /// Whether the corner is convex and its triangle holds no other corner, borders included.
+    /// Whether the triangle of a convex corner holds no other corner, borders included. One that does is no candidate
+    /// until the corner that was found in it is gone or convex.
     fn is_ear(&mut self, corner: usize) -> bool {
-        if self.reflex[corner] {
-            return false;
-        }
-        if let Some(true) = self.reflex.get(self.in_the_way[corner] as usize) {
-            return false;
-        }
         let triangle = [self.previous[corner], corner, self.next[corner]].map(|i| self.outline[i]);
         let [a, b, c] = triangle;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        let (outline, reflex, looked_at) = (self.outline, &self.reflex, &mut self.looked_at);
+        let (outline, convex, looked_at) = (self.outline, &self.convex, &mut self.looked_at);
+        let gone = |other: usize| self.next[self.previous[other]] != other;
         let inside = |other: u32| {
             *looked_at += 1;
             let p = outline[other as usize];
             let near = low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
-            near && reflex[other as usize]
+            near && !convex.is_set(other as usize)
+                && !gone(other as usize)
                 && !triangle.contains(&p)
                 && orient2d(a, b, p) != Ordering::Less
                 && orient2d(b, c, p) != Ordering::Less
                 && orient2d(c, a, p) != Ordering::Less
         };
-        let found = self.grid.find(low, high, inside);
-        self.in_the_way[corner] = found.unwrap_or(NOTHING);
-        found.is_none()
+        let Some(found) = self.grid.find(low, high, inside) else {
+            return true;
+        };
+        self.candidates.set(corner, false);
+        self.next_blocked[corner] = std::mem::replace(&mut self.first_blocked[found as usize], corner as u32);
+        false
     }
 
     fn clip(&mut self, corner: usize) {
         let (before, after) = (self.previous[corner], self.next[corner]);
         self.next[before] = after;
         self.previous[after] = before;
-        self.reflex[corner] = false;
+        self.convex.set(corner, false);
+        self.candidates.set(corner, false);
+        self.free(corner);
         // Corners can only become convex by clipping, as long as the outline is simple; a forced cut may do otherwise.
         for other in [before, after] {
-            let reflex = self.turn(other) != Ordering::Greater;
-            if reflex && !self.reflex[other] {
+            let convex = self.turn(other) == Ordering::Greater;
+            if !convex && self.convex.is_set(other) {
                 self.grid.late.push(other as u32);
             }
-            self.reflex[other] = reflex;
-            self.in_the_way[other] = NOTHING;
+            self.convex.set(other, convex);
+            self.candidates.set(other, convex);
+            if convex {
+                self.free(other);
+            }
         }
     }
 
-    /// The first convex corner from `at` on, or `at` if there is none.
-    fn least_bad(&self, at: usize, left: usize) -> usize {
-        let mut corner = at;
-        for _ in 0..left {
-            if self.turn(corner) == Ordering::Greater {
-                return corner;
+    /// Makes the corners in whose triangles a corner was found candidates again: it is no longer in their way.
+    fn free(&mut self, corner: usize) {
+        let mut blocked = std::mem::replace(&mut self.first_blocked[corner], NOTHING);
+        while blocked != NOTHING {
+            let next = std::mem::replace(&mut self.next_blocked[blocked as usize], NOTHING);
+            if self.convex.is_set(blocked as usize) {
+                self.candidates.set(blocked as usize, true);
             }
-            corner = self.next[corner];
+            blocked = next;
         }
-        at
+    }
+}
+
+/// Marks on corners, of which the next one is found fast.
+struct Marks {
+    words: Vec<u64>,
+    /// For each word whether it has a mark.
+    summary: Vec<u64>,
+}
+
+impl Marks {
+    fn new(count: usize) -> Self {
+        let words = count.div_ceil(64);
+        Self { words: vec![0; words], summary: vec![0; words.div_ceil(64)] }
+    }
+
+    fn is_set(&self, corner: usize) -> bool {
+        self.words[corner / 64] >> (corner % 64) & 1 == 1
+    }
+
+    fn set(&mut self, corner: usize, on: bool) {
+        let word = &mut self.words[corner / 64];
+        *word = *word & !(1 << (corner % 64)) | u64::from(on) << (corner % 64);
+        let (slot, any) = (corner / 64, u64::from(*word != 0));
+        let word = &mut self.summary[slot / 64];
+        *word = *word & !(1 << (slot % 64)) | any << (slot % 64);
+    }
+
+    /// The first mark from a corner on, going round.
+    fn next(&self, corner: usize) -> Option<usize> {
+        self.from(corner).or_else(|| self.from(0))
+    }
+
+    fn from(&self, corner: usize) -> Option<usize> {
+        let word = corner / 64;
+        let here = self.words.get(word)? & (!0 << (corner % 64));
+        if here != 0 {
+            return Some(word * 64 + here.trailing_zeros() as usize);
+        }
+        let slot = word + 1;
+        let mut at = slot / 64;
+        let mut summary = self.summary.get(at)? & (!0 << (slot % 64));
+        while summary == 0 {
+            at += 1;
+            summary = *self.summary.get(at)?;
+        }
+        let word = at * 64 + summary.trailing_zeros() as usize;
+        Some(word * 64 + self.words[word].trailing_zeros() as usize)
     }
 }
 
