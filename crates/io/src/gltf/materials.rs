@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use shapeloom_shape::Material;
 
+use super::allowance::Allowance;
 use super::json::At;
 use crate::memory::Memory;
 use crate::placed::Losses;
@@ -15,6 +16,7 @@ use crate::{Fault, ReadError, SiblingName};
 pub(super) fn read(
     document: &At<'_>,
     memory: &mut Memory<'_>,
+    allowance: &mut Allowance,
     losses: &mut Losses,
 ) -> Result<Vec<Material>, ReadError> {
     let mut materials = Vec::new();
@@ -24,6 +26,8 @@ pub(super) fn read(
             memory.take(1, 2 * size_of::<Material>())?;
             let read = from_json(&material, document, &mut kept)?;
             if let Some(name) = &read.texture {
+                // Many materials may name the same one.
+                allowance.take(name.len(), 1, &material)?;
                 memory.take(name.len(), 1)?;
             }
             materials.push(read);

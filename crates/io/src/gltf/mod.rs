@@ -19,6 +19,7 @@
 //! - **Wedges.** Vertices are split exactly where the values of the corners around them differ: see [`split`].
 
 mod accessor;
+mod allowance;
 mod base64;
 mod bin;
 mod buffers;

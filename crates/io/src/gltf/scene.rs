@@ -6,6 +6,7 @@ use serde_json::Value;
 use shapeloom_core::glam::{DMat3, DMat4, DQuat, DVec3};
 use shapeloom_core::{Affine, Category, Findings, Place, Severity};
 
+use super::allowance::Allowance;
 use super::json::At;
 use crate::memory::Memory;
 use crate::{Fault, ReadContext, ReadError};
@@ -24,6 +25,7 @@ pub(super) struct Placed<'j> {
 pub(super) fn placed_nodes<'j>(
     document: &At<'j>,
     memory: &mut Memory<'_>,
+    allowance: &Allowance,
     findings: &mut Findings,
     context: &ReadContext,
 ) -> Result<Vec<Placed<'j>>, ReadError> {
@@ -52,6 +54,8 @@ pub(super) fn placed_nodes<'j>(
     };
     let nodes: Vec<At<'j>> = nodes.elements()?.collect();
     let mut places = BTreeSet::new();
+    // Every node once, and as many instances as there may be parts.
+    let most = context.limits.max_elements.min(count as u64 + allowance.most_parts());
     let mut steps = 0u64;
     let mut placed = Vec::new();
     while let Some(Entry { node, above, depth }) = stack.pop() {
@@ -65,9 +69,9 @@ pub(super) fn placed_nodes<'j>(
         if steps.is_multiple_of(4096) {
             context.exec.check()?;
         }
-        if steps > context.limits.max_elements {
+        if steps > most {
             let found = "a node that is reached in very many ways";
-            let fault = at.fault("E-gltf-limit", found, format!("at most {} in all", context.limits.max_elements));
+            let fault = at.fault("E-gltf-limit", found, format!("at most {most} in all"));
             return Err(fault.category(Category::OverLimit).into());
         }
         let placement = above * local(at, node, findings)?;
@@ -238,7 +242,8 @@ mod tests {
 
     fn walk(document: &Value, context: &ReadContext) -> Result<Vec<(String, Affine)>, ReadError> {
         let mut memory = Memory::new(&context.exec);
-        let placed = placed_nodes(&At::root(document), &mut memory, &mut Findings::default(), context)?;
+        let placed =
+            placed_nodes(&At::root(document), &mut memory, &Allowance::new(0), &mut Findings::default(), context)?;
         Ok(placed.into_iter().map(|placed| (placed.node.path, placed.placement)).collect())
     }
 
@@ -306,8 +311,11 @@ mod tests {
         }
         nodes.push(json!({"mesh": 0}));
         let context =
-            ReadContext { exec: shapeloom_core::Exec::default().with_memory(8 << 20), ..ReadContext::default() };
+            ReadContext { exec: shapeloom_core::Exec::default().with_memory(4 << 20), ..ReadContext::default() };
         assert!(matches!(walk(&json!({"nodes": nodes}), &context), Err(ReadError::OverBudget(_))));
+        // Without a budget, what the length of the document allows.
+        let error = walk(&json!({"nodes": nodes}), &ReadContext::default()).unwrap_err();
+        assert_eq!(error.fault().unwrap().code, "E-gltf-limit");
         let mut context = ReadContext::default();
         context.limits.max_elements = 1000;
         assert_eq!(walk(&json!({"nodes": nodes}), &context).unwrap_err().fault().unwrap().code, "E-gltf-limit");

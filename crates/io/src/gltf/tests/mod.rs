@@ -1,6 +1,7 @@
 //! Files written, read by us and by another reader, and damaged.
 
 mod json_files;
+mod limits;
 mod lines;
 mod looks;
 mod sparse;
@@ -482,7 +483,7 @@ fn instances_beyond_the_budget_are_refused() {
             "buffers": [{"byteLength": 12, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAA"}]
         })
     };
-    let small = ReadContext { exec: Exec::default().with_memory(8 << 20), ..ReadContext::default() };
+    let small = ReadContext { exec: Exec::default().with_memory(4 << 20), ..ReadContext::default() };
     let attempt = |count| read(shape(count).to_string().as_bytes(), format_by_id("gltf").unwrap(), &small);
     assert_eq!(attempt(50).unwrap().shape.parts.len(), 2500);
     assert!(matches!(attempt(400), Err(ReadError::OverBudget(_))));
