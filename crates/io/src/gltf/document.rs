@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Affine, Deviation, Findings, Place, Report, Severity};
+use shapeloom_core::{Affine, Deviation, Exec, Findings, Place, Report, Severity};
 use shapeloom_shape::{Geometry, Part, Shape, UpAxis};
 
 use super::GLB;
@@ -35,6 +35,7 @@ pub(super) fn document(
     let mut losses = Losses::from(frame_losses(shape, format));
     let looks = Looks::new(&shape.materials, &mut losses);
     let mut builder = Builder {
+        exec: &context.exec,
         format: format.id,
         flatten,
         looks,
@@ -63,6 +64,7 @@ pub(super) fn document(
 
 /// What is written so far.
 pub(super) struct Builder<'s> {
+    pub exec: &'s Exec,
     /// The id of the format.
     pub format: &'static str,
     flatten: bool,

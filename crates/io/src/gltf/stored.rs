@@ -82,10 +82,11 @@ pub(super) fn store(builder: &mut Builder<'_>, index: usize, part: &Part) -> Res
     })?;
     let mut primitives = Vec::new();
     if let Geometry::TriMesh(mesh) = &*geometry {
-        let split = split(points.len(), mesh.triangles(), &wedge_columns(&geometry)).ok_or_else(|| {
-            let (found, max) = (mesh.triangles().len() as u64 * 3, u64::from(u32::MAX) - 1);
-            WriteError::TooLarge { format: builder.format, what: "split vertices", found, max }
-        })?;
+        let split =
+            split(points.len(), mesh.triangles(), &wedge_columns(&geometry), builder.exec)?.ok_or_else(|| {
+                let (found, max) = (mesh.triangles().len() as u64 * 3, u64::from(u32::MAX) - 1);
+                WriteError::TooLarge { format: builder.format, what: "split vertices", found, max }
+            })?;
         for (material, split) in by_material(split, material_column(mesh)) {
             let points: Vec<DVec3> = split.vertices.iter().map(|&vertex| points[vertex as usize]).collect();
             let mut primitive = primitive(builder, mode, &geometry, Some(&split), &points, single.origin);
