@@ -7,7 +7,7 @@ use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_mesh::{Column, Domain, GeometricGraph, PointCloud, Polyline, TriMesh};
 use shapeloom_shape::Geometry;
 
-use super::accessor::{Accessor, Declared};
+use super::accessor::{Accessor, Declared, is_matrix};
 use super::allowance::Allowance;
 use super::bin::{FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
 use super::buffers::Buffer;
@@ -104,6 +104,10 @@ impl<'a> Primitives<'a, '_> {
         let mut columns: Vec<Column> = Vec::new();
         for (semantic, index) in attributes.members()? {
             if semantic == "POSITION" {
+                continue;
+            }
+            if !columns::is_known(semantic) && is_matrix(&self.document, &index)? {
+                self.losses.column(Domain::Vertex, semantic, "columns of shapes have no place for matrices");
                 continue;
             }
             let accessor = self.open(Declared::read(&self.document, &index)?)?;

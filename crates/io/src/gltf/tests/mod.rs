@@ -493,3 +493,31 @@ fn instances_beyond_the_budget_are_refused() {
     let error = read(text.to_string().as_bytes(), format_by_id("gltf").unwrap(), &context).unwrap_err();
     assert_eq!(error.code(), "E-gltf-buffer");
 }
+
+#[test]
+fn an_attribute_of_matrices_is_lost_alone() {
+    for (kind, semantic) in [("MAT2", "_FRAME"), ("MAT3", "_FRAME"), ("MAT4", "_FRAME"), ("MAT4", "BONES")] {
+        let read = document(|document| {
+            document["meshes"][0]["primitives"][0]["attributes"][semantic] = json!(2);
+            let matrices = json!({"bufferView": 0, "componentType": 5126, "count": 3, "type": kind});
+            document["accessors"].as_array_mut().unwrap().push(matrices);
+        });
+        let read = read.unwrap();
+        assert_eq!(mesh(&read.shape, 0).triangles(), [[0, 1, 2]]);
+        let said: Vec<String> = read.losses.iter().map(ToString::to_string).collect();
+        assert_eq!(said.len(), 1);
+        assert!(
+            said[0].contains(&format!("vertex attribute \"{semantic}\"")) && said[0].contains("matrices"),
+            "{said:?}"
+        );
+    }
+    // Where glTF says what it must be, it is an error as before.
+    for semantic in ["NORMAL", "TEXCOORD_0", "COLOR_0", "POSITION"] {
+        let error = document(|document| {
+            document["meshes"][0]["primitives"][0]["attributes"][semantic] = json!(2);
+            let matrices = json!({"bufferView": 0, "componentType": 5126, "count": 3, "type": "MAT3"});
+            document["accessors"].as_array_mut().unwrap().push(matrices);
+        });
+        assert_eq!(error.unwrap_err().code(), "E-gltf-type");
+    }
+}
