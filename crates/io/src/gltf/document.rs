@@ -10,6 +10,7 @@ use shapeloom_shape::{Geometry, Part, Shape, UpAxis};
 
 use super::GLB;
 use super::bin::{Bin, array, object};
+use super::changes::Changes;
 use super::looks::Looks;
 use super::stored::{Stored, store};
 use crate::placed::{Losses, frame_losses};
@@ -40,6 +41,7 @@ pub(super) fn document(
         flatten,
         looks,
         losses,
+        changes: Changes::default(),
         bin: Bin::default(),
         nodes: Vec::new(),
         meshes: Vec::new(),
@@ -70,6 +72,7 @@ pub(super) struct Builder<'s> {
     flatten: bool,
     pub looks: Looks<'s>,
     pub losses: Losses,
+    pub changes: Changes,
     pub findings: Findings,
     pub bin: Bin,
     pub vertices: usize,
@@ -164,6 +167,11 @@ impl Builder<'_> {
         };
         let name = if self.format == GLB.id { "write-glb" } else { "write-gltf" };
         let mut report = Report::new(name, deviation, basis);
+        if self.rounding > 0.0 {
+            let why = format!("they were rounded to single precision, by at most {:e}", self.rounding);
+            self.losses.push("positions", why);
+        }
+        self.changes.say(&mut self.losses);
         report.losses = std::mem::take(&mut self.losses).into_vec();
         report.findings = std::mem::take(&mut self.findings);
         report

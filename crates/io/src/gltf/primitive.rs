@@ -12,6 +12,7 @@ use super::allowance::Allowance;
 use super::bin::{FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
 use super::buffers::Buffer;
 use super::columns;
+use super::ignored::Ignored;
 use super::json::At;
 use super::lines::chain;
 use crate::memory::Memory;
@@ -27,6 +28,7 @@ pub(super) struct Primitives<'a, 'e> {
     pub allowance: Allowance,
     pub findings: Findings,
     pub losses: Losses,
+    pub ignored: Ignored<'a>,
 }
 
 impl<'a> Primitives<'a, '_> {
@@ -41,7 +43,7 @@ impl<'a> Primitives<'a, '_> {
     }
 
     /// The geometry of a primitive, if it has one.
-    pub fn read(&mut self, primitive: &At<'_>) -> Result<Option<Arc<Geometry>>, ReadError> {
+    pub fn read(&mut self, primitive: &At<'a>) -> Result<Option<Arc<Geometry>>, ReadError> {
         self.context.exec.check()?;
         if primitive.value.pointer("/extensions/KHR_draco_mesh_compression").is_some() {
             let fault = primitive.fault("E-gltf-feature", "Draco compression", "plain data");

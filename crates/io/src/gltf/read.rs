@@ -8,6 +8,7 @@ use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_shape::{Geometry, Part, Shape, Units, UpAxis};
 
 use super::allowance::Allowance;
+use super::ignored::Ignored;
 use super::json::{self, At};
 use super::primitive::Primitives;
 use super::{buffers, container, materials, scene};
@@ -50,13 +51,15 @@ fn read_document<'e>(
     let root = At::root(document);
     check_asset(&root)?;
     let buffers = buffers::open(&root, bin, &mut memory, &mut allowance, context)?;
-    let placed = scene::placed_nodes(&root, &mut memory, &allowance, &mut findings, context)?;
+    let mut ignored = Ignored::default();
+    ignored.of("the document", &root);
+    let placed = scene::placed_nodes(&root, &mut memory, &allowance, &mut ignored, &mut findings, context)?;
 
     let mut shape = Shape { units: Some(Units::METERS), up: Some(UpAxis::Y), ..Shape::default() };
     let mut losses = document_losses(&root)?;
-    shape.materials = materials::read(&root, &mut memory, &mut allowance, &mut losses)?;
+    shape.materials = materials::read(&root, &mut memory, &mut allowance, &mut losses, &mut ignored)?;
     let mut primitives =
-        Primitives { document: root.clone(), buffers: &buffers, context, memory, allowance, findings, losses };
+        Primitives { document: root.clone(), buffers: &buffers, context, memory, allowance, findings, losses, ignored };
     let mut meshes = Meshes::default();
     let count = placed.len();
     for (done, placed) in placed.iter().enumerate() {
@@ -68,11 +71,14 @@ fn read_document<'e>(
         }
         let index = node.require("mesh")?;
         let mesh = root.element("meshes", &index)?;
-        let name = match node.get("name")? {
-            Some(name) => Some(name),
-            None => mesh.get("name")?,
-        };
-        let name = name.map_or(Ok(""), |name| name.text())?;
+        let [own, name] = [node.get("name")?, mesh.get("name")?].map(|name| name.map(|name| name.text()).transpose());
+        let (own, name) = (own?, name?);
+        if let (Some(own), Some(name)) = (own, name)
+            && own != name
+        {
+            primitives.ignored.name(index.count_value()?, name);
+        }
+        let name = own.or(name).unwrap_or("");
         for (geometry, material) in meshes.read(index.count_value()?, &mesh, &mut primitives)? {
             let bytes = name.len() + 2 * size_of::<Part>();
             primitives.take(1, bytes, node)?;
@@ -81,7 +87,9 @@ fn read_document<'e>(
             shape.parts.push(Part { name: name.to_owned(), geometry, placement, material: *material });
         }
     }
-    Ok(ReadShape { shape, findings: primitives.findings, losses: primitives.losses.into_vec() })
+    let mut losses = primitives.losses.into_vec();
+    losses.extend(primitives.ignored.into_losses());
+    Ok(ReadShape { shape, findings: primitives.findings, losses })
 }
 
 /// What a primitive adds to each node that shows it: its geometry and its material.
@@ -96,10 +104,17 @@ struct Meshes {
 
 impl Meshes {
     /// The primitives of the mesh with that number that have a geometry.
-    fn read(&mut self, number: u64, mesh: &At<'_>, primitives: &mut Primitives<'_, '_>) -> Result<&[Shown], ReadError> {
+    fn read<'a>(
+        &mut self,
+        number: u64,
+        mesh: &At<'a>,
+        primitives: &mut Primitives<'a, '_>,
+    ) -> Result<&[Shown], ReadError> {
         if !self.shown.contains_key(&number) {
+            primitives.ignored.of("meshes", mesh);
             let mut shown = Vec::new();
             for primitive in mesh.require("primitives")?.elements()? {
+                primitives.ignored.of("primitives", &primitive);
                 let geometry = self.geometry(&primitive, primitives)?;
                 let material = match primitive.get("material")? {
                     Some(index) => {
@@ -118,10 +133,10 @@ impl Meshes {
         Ok(self.shown.get(&number).map_or(&[], Vec::as_slice))
     }
 
-    fn geometry(
+    fn geometry<'a>(
         &mut self,
-        primitive: &At<'_>,
-        primitives: &mut Primitives<'_, '_>,
+        primitive: &At<'a>,
+        primitives: &mut Primitives<'a, '_>,
     ) -> Result<Option<Arc<Geometry>>, ReadError> {
         primitives.context.exec.check()?;
         let key = geometry_key(primitive.value);

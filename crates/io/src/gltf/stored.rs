@@ -8,7 +8,7 @@ use shapeloom_shape::{Geometry, Part};
 
 use super::by_material::{by_material, material_column};
 use super::document::Builder;
-use super::encode::{Elements, Encoder, Source};
+use super::encode::{Elements, Encoder, Sets, Source};
 use super::looks::Looks;
 use super::origin::{about, single_precision};
 use super::split::{Split, split};
@@ -145,15 +145,20 @@ fn encode(
         }
     }
     let spare_normals = || split.map(|split| facet_normals(split, points));
+    let wedge = columns_of(geometry, Domain::Wedge);
+    let hidden = |column: &&Column| wedge.is_some_and(|wedge| wedge.get(column.name()).is_some());
+    let vertex = || columns_of(geometry, Domain::Vertex).into_iter().flatten();
+    let written: Vec<&Column> = vertex().filter(|column| !hidden(column)).chain(wedge.into_iter().flatten()).collect();
     let mut encoder = Encoder {
         bin: &mut builder.bin,
         losses: &mut builder.losses,
         findings: &mut builder.findings,
+        changes: &mut builder.changes,
+        sets: Sets::of(&written),
         spare_normals: &spare_normals,
     };
-    let wedge = columns_of(geometry, Domain::Wedge);
-    for column in columns_of(geometry, Domain::Vertex).into_iter().flatten() {
-        if wedge.is_some_and(|wedge| wedge.get(column.name()).is_some()) {
+    for column in vertex() {
+        if hidden(&column) {
             let why = "glTF has one attribute of that name, and the wedge attribute took it";
             encoder.losses.column(Domain::Vertex, column.name(), why);
             continue;

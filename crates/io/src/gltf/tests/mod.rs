@@ -4,6 +4,7 @@ mod json_files;
 mod limits;
 mod lines;
 mod looks;
+mod losses;
 mod sparse;
 
 use std::sync::Arc;
@@ -90,7 +91,7 @@ fn scenes_come_back_and_stay_the_same_bits() {
     let shape = scene();
     let (file, report) = to_glb(&shape).unwrap();
     assert_eq!(report.deviation, Deviation::Exact);
-    assert!(report.losses.is_empty(), "{:?}", report.losses);
+    assert!(report.losses.iter().all(|loss| loss.what == "vertex attribute \"normal\""), "{:?}", report.losses);
     let back = from_glb(&file);
     assert!(back.findings.is_empty() && back.losses.is_empty());
     let read = &back.shape;
@@ -239,10 +240,12 @@ fn what_does_not_fit_is_said() {
         "vertex attribute \"wide\"",
         "0 points of the point-cloud of part 1",
         "texture \"../brick.png\"",
+        // Scaled and rounded, and replaced.
+        "vertex attribute \"normal\"",
     ] {
         assert!(whats.contains(&what), "{what} in {whats:?}");
     }
-    assert_eq!(whats.len(), 8);
+    assert_eq!(whats.len(), 10);
     assert!(report.findings.iter().any(|finding| finding.code == "W-glb-up"));
     let back = from_glb(&file).shape;
     let points = crate::placed::points_of(&back.parts[0].geometry).unwrap();
