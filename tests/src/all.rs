@@ -7,6 +7,7 @@ mod bench;
 mod between_formats;
 mod codes;
 mod collection;
+mod collection_gltf;
 mod collection_obj;
 mod collection_off_stl;
 mod collection_ply;

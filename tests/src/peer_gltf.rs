@@ -32,7 +32,7 @@ fn positions(geometry: &Geometry) -> &[DVec3] {
 }
 
 /// The files with the facts that are known of them.
-fn files() -> Vec<(String, String)> {
+pub fn files() -> Vec<(String, String)> {
     let Some(table) = shared_data("MANIFEST.tsv") else { return Vec::new() };
     let table = std::fs::read_to_string(table).expect("the table of the collection");
     let rows = table.lines().map(|line| line.split('\t').collect::<Vec<_>>());
@@ -54,7 +54,7 @@ fn known(shared: bool) -> &'static [&'static str] {
 }
 
 /// Its buffer is not in the collection.
-const WITHOUT_BUFFER: &str = "SimpleSparseAccessor.gltf";
+pub const WITHOUT_BUFFER: &str = "SimpleSparseAccessor.gltf";
 
 #[test]
 fn real_files_have_their_known_counts() {

@@ -60,7 +60,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-gltf-json", "The document is not valid JSON. The message names the first place at fault."),
     (
         "E-gltf-limit",
-        "The file has more elements than the reader's limits allow, or claims very many that are nowhere in it and would all be zeros.",
+        "The file has more elements than the reader's limits allow, claims very many that are nowhere in it and would all be zeros, or shows the same data so often that what is read would be out of proportion to it.",
     ),
     ("E-gltf-mesh", "The vertices, indices and attributes of a primitive make no mesh."),
     ("E-gltf-missing", "A member that glTF requires is absent."),

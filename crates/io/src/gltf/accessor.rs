@@ -84,6 +84,12 @@ impl<'a> Declared<'a> {
     }
 }
 
+/// Whether the accessor that `index` names says that its elements are matrices.
+pub(super) fn is_matrix(document: &At<'_>, index: &At<'_>) -> Result<bool, Box<Fault>> {
+    let kind = document.element("accessors", index)?.require("type")?;
+    Ok(matches!(kind.text()?, "MAT2" | "MAT3" | "MAT4"))
+}
+
 /// The bytes of a component.
 pub(super) fn component_size(component_type: u64) -> Option<u64> {
     match component_type {

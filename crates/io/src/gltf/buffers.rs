@@ -1,9 +1,11 @@
 //! The bytes behind a document's buffers.
 
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 use shapeloom_core::{Category, Place};
 
+use super::allowance::Allowance;
 use super::base64;
 use super::json::At;
 use crate::memory::Memory;
@@ -21,9 +23,11 @@ pub(super) fn open<'a>(
     document: &At<'_>,
     bin: Option<(&'a [u8], usize)>,
     memory: &mut Memory<'_>,
+    allowance: &mut Allowance,
     context: &ReadContext,
 ) -> Result<Vec<Buffer<'a>>, ReadError> {
     let mut buffers = Vec::new();
+    let mut beside = BTreeSet::new();
     let Some(list) = document.get("buffers")? else {
         return Ok(buffers);
     };
@@ -31,7 +35,17 @@ pub(super) fn open<'a>(
         context.exec.check()?;
         let length = buffer.require("byteLength")?.count_value()?;
         let (bytes, start) = match (buffer.get("uri")?, bin) {
-            (Some(uri), _) => (Cow::Owned(from_uri(&uri, length, memory, context)?), None),
+            (Some(uri), _) => {
+                let is_new = beside.insert(uri.text()?);
+                if !is_new {
+                    allowance.take(usize::try_from(length).unwrap_or(usize::MAX), 1, &uri)?;
+                }
+                let bytes = from_uri(&uri, length, memory, context)?;
+                if is_new && !uri.text()?.starts_with("data:") {
+                    allowance.extend(bytes.len());
+                }
+                (Cow::Owned(bytes), None)
+            }
             (None, Some((bytes, start))) if index == 0 => (Cow::Borrowed(bytes), Some(start)),
             (None, _) => {
                 let fault = buffer.fault("E-gltf-buffer", "no address and no binary chunk", "bytes for the buffer");

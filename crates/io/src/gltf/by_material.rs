@@ -59,6 +59,7 @@ pub(super) fn by_material(split: Split, column: Option<&Column>) -> Vec<(Option<
 mod tests {
     use super::super::split::{NO_WEDGE, split};
     use super::*;
+    use shapeloom_core::Exec;
 
     fn column(words: &[&str]) -> Column {
         let names: Vec<String> = ["", "oak", "elm"].map(str::to_owned).to_vec();
@@ -70,7 +71,7 @@ mod tests {
     fn every_part_has_its_own_vertices() {
         let triangles = [[0, 1, 2], [2, 1, 3], [5, 3, 1]];
         let materials = column(&["elm", "oak", "elm"]);
-        let parts = by_material(split(7, &triangles, &[]).unwrap(), Some(&materials));
+        let parts = by_material(split(7, &triangles, &[], &Exec::default()).unwrap().unwrap(), Some(&materials));
         let names: Vec<Option<&str>> = parts.iter().map(|(name, _)| *name).collect();
         assert_eq!(names, [Some("elm"), Some("oak")]);
         // Vertices 4 and 6 are used by no triangle.
@@ -82,7 +83,7 @@ mod tests {
 
     #[test]
     fn one_material_keeps_the_mesh_whole() {
-        let whole = || split(5, &[[0, 1, 2], [2, 1, 3]], &[]).unwrap();
+        let whole = || split(5, &[[0, 1, 2], [2, 1, 3]], &[], &Exec::default()).unwrap().unwrap();
         assert_eq!(by_material(whole(), Some(&column(&["oak"; 2]))), [(Some("oak"), whole())]);
         assert_eq!(by_material(whole(), Some(&column(&[""; 2]))), [(None, whole())]);
         assert_eq!(by_material(whole(), None), [(None, whole())]);

@@ -37,6 +37,11 @@ pub(super) fn column(semantic: &str, accessor: &Accessor<'_>) -> Result<Result<C
     Ok(built)
 }
 
+/// Whether glTF says what the values of that attribute mean and shapes keep them.
+pub(super) fn is_known(semantic: &str) -> bool {
+    semantic == "NORMAL" || matches!(semantic.split_once('_'), Some(("TEXCOORD" | "COLOR", _)))
+}
+
 fn numbered(name: &str, set: &str) -> String {
     if set == "0" { name.to_owned() } else { format!("{name}_{set}") }
 }

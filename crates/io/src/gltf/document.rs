@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use serde_json::Value;
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Affine, Deviation, Findings, Place, Report, Severity};
+use shapeloom_core::{Affine, Deviation, Exec, Findings, Place, Report, Severity};
 use shapeloom_shape::{Geometry, Part, Shape, UpAxis};
 
 use super::GLB;
 use super::bin::{Bin, array, object};
+use super::changes::Changes;
 use super::looks::Looks;
 use super::stored::{Stored, store};
 use crate::placed::{Losses, frame_losses};
@@ -35,10 +36,12 @@ pub(super) fn document(
     let mut losses = Losses::from(frame_losses(shape, format));
     let looks = Looks::new(&shape.materials, &mut losses);
     let mut builder = Builder {
+        exec: &context.exec,
         format: format.id,
         flatten,
         looks,
         losses,
+        changes: Changes::default(),
         bin: Bin::default(),
         nodes: Vec::new(),
         meshes: Vec::new(),
@@ -63,11 +66,13 @@ pub(super) fn document(
 
 /// What is written so far.
 pub(super) struct Builder<'s> {
+    pub exec: &'s Exec,
     /// The id of the format.
     pub format: &'static str,
     flatten: bool,
     pub looks: Looks<'s>,
     pub losses: Losses,
+    pub changes: Changes,
     pub findings: Findings,
     pub bin: Bin,
     pub vertices: usize,
@@ -162,6 +167,11 @@ impl Builder<'_> {
         };
         let name = if self.format == GLB.id { "write-glb" } else { "write-gltf" };
         let mut report = Report::new(name, deviation, basis);
+        if self.rounding > 0.0 {
+            let why = format!("they were rounded to single precision, by at most {:e}", self.rounding);
+            self.losses.push("positions", why);
+        }
+        self.changes.say(&mut self.losses);
         report.losses = std::mem::take(&mut self.losses).into_vec();
         report.findings = std::mem::take(&mut self.findings);
         report

@@ -6,6 +6,7 @@ use shapeloom_core::{Findings, Place, Severity};
 use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, TEXCOORD, Values};
 
 use super::bin::{BYTE, Bin, SHORT, UNSIGNED_BYTE, UNSIGNED_SHORT};
+use super::changes::{Change, Changes};
 use super::split::NO_WEDGE;
 use crate::color::linear;
 use crate::placed::Losses;
@@ -43,11 +44,59 @@ pub(super) struct Source<'a> {
     pub elements: Elements<'a>,
 }
 
+/// The columns of a primitive that are numbered sets of texture coordinates and of colours.
+pub(super) struct Sets<'a> {
+    texcoords: Vec<&'a str>,
+    colors: Vec<&'a str>,
+}
+
+impl<'a> Sets<'a> {
+    /// Sets from 0 on without a gap, as glTF asks: a column beyond one is an attribute of its own.
+    pub fn of(columns: &[&'a Column]) -> Self {
+        let fitting = |name: &str, fits: fn(&Column) -> bool| {
+            let mut sets: Vec<(u32, &'a str)> = columns
+                .iter()
+                .filter(|column| fits(column))
+                .filter_map(|column| Some((set_of(column.name(), name)?, column.name())))
+                .collect();
+            sets.sort_unstable();
+            let whole = sets.into_iter().zip(0..).take_while(|&((set, _), number)| set == number);
+            whole.map(|((_, name), _)| name).collect()
+        };
+        let is_color = |column: &Column| {
+            let has_range = matches!(column.values(), Values::U8(_) | Values::U16(_)) || is_floating(column);
+            has_range && matches!(column.width(), 3 | 4)
+        };
+        Self {
+            texcoords: fitting(TEXCOORD, |column| is_floating(column) && column.width() == 2),
+            colors: fitting(COLOR, is_color),
+        }
+    }
+}
+
+fn is_floating(column: &Column) -> bool {
+    matches!(column.values(), Values::F32(_) | Values::F64(_))
+}
+
+/// The set that a column of that name is: `texcoord` is 0, `texcoord_1` is 1.
+fn set_of(column: &str, name: &str) -> Option<u32> {
+    let rest = column.strip_prefix(name)?;
+    if rest.is_empty() {
+        return Some(0);
+    }
+    let digits = rest.strip_prefix('_')?;
+    // Only as reading names them: 1 and not 01.
+    digits.parse().ok().filter(|&set: &u32| set > 0 && set.to_string() == digits)
+}
+
 /// Writes columns as attributes of one primitive, and says what does not fit.
 pub(super) struct Encoder<'a> {
     pub bin: &'a mut Bin,
     pub losses: &'a mut Losses,
     pub findings: &'a mut Findings,
+    pub sets: Sets<'a>,
+    /// What was changed to fit, by column.
+    pub changes: &'a mut Changes,
     /// Normals for vertices whose own has no direction.
     pub spare_normals: &'a dyn Fn() -> Option<Vec<DVec3>>,
 }
@@ -55,11 +104,21 @@ pub(super) struct Encoder<'a> {
 impl Encoder<'_> {
     pub fn column(&mut self, attributes: &mut Map<String, Value>, source: Source<'_>) {
         let column = source.column;
-        let floating = matches!(column.values(), Values::F32(_) | Values::F64(_));
         let (name, accessor) = match (column.name(), column.width()) {
-            (NORMAL, 3) if floating => ("NORMAL".to_owned(), self.normals(source)),
-            (TEXCOORD, 2) if floating => ("TEXCOORD_0".to_owned(), Some(self.texcoords(source))),
-            (COLOR, 3 | 4) => ("COLOR_0".to_owned(), self.colors(source)),
+            (NORMAL, 3) if is_floating(column) => ("NORMAL".to_owned(), self.normals(source)),
+            (name, _) if self.sets.texcoords.contains(&name) => {
+                let set = set_of(name, TEXCOORD).unwrap_or_default();
+                (format!("TEXCOORD_{set}"), Some(self.texcoords(source)))
+            }
+            (name, _) if self.sets.colors.contains(&name) => {
+                let set = set_of(name, COLOR).unwrap_or_default();
+                (format!("COLOR_{set}"), self.colors(source))
+            }
+            (COLOR, 3 | 4) => {
+                let why = format!("colours of type {} have no known range", column.values().type_name());
+                self.losses.column(source.domain, COLOR, why);
+                return;
+            }
             (name, 1..=4) => (format!("_{name}"), self.custom(source)),
             (name, width) => {
                 self.losses.column(source.domain, name, format!("glTF attributes have 1 to 4 numbers, not {width}"));
@@ -76,9 +135,12 @@ impl Encoder<'_> {
         let mut values = Vec::with_capacity(count * 3);
         let mut spare = None;
         let mut rounded = false;
+        let mut change = Change::default();
         for vertex in 0..count {
             let normal = source.elements.get(vertex).map_or(DVec3::ZERO, |element| source.column.vector(element));
-            let unit = match unit(normal) {
+            let direction = unit(normal);
+            let is_direction = direction.is_some();
+            let unit = match direction {
                 Some(unit) => unit,
                 None => {
                     let spare = spare.get_or_insert_with(self.spare_normals);
@@ -87,6 +149,8 @@ impl Encoder<'_> {
                         self.losses.column(source.domain, source.column.name(), why);
                         return None;
                     };
+                    // An unused vertex has none to lose.
+                    change.replaced += u64::from(source.elements.get(vertex).is_some());
                     self.findings.push(
                         "W-glb-normal",
                         Severity::Note,
@@ -96,19 +160,22 @@ impl Encoder<'_> {
                     unit(normals[vertex]).unwrap_or([0.0, 0.0, 1.0])
                 }
             };
-            rounded |= DVec3::from_array(unit.map(f64::from)) != normal;
+            let written = DVec3::from_array(unit.map(f64::from));
+            rounded |= written != normal;
+            if is_direction {
+                change.scaled = change.scaled.max((written - normal).abs().max_element());
+            }
             values.extend_from_slice(&unit);
         }
+        self.changes.add(source.domain, source.column.name(), change);
         self.note_rounding(rounded, source);
         Some(self.bin.floats(3, &values, false))
     }
 
     fn texcoords(&mut self, source: Source<'_>) -> Value {
-        let at = |element: usize, component: usize| {
-            let value = source.column.number(element, component);
-            if component == 1 { 1.0 - value } else { value }
-        };
-        self.rounded(source, 2, at)
+        let at = |element: usize, component: usize| source.column.number(element, component);
+        let flip = |number: f64, component: usize| if component == 1 { 1.0 - number } else { number };
+        self.rounded(source, 2, at, flip)
     }
 
     fn colors(&mut self, source: Source<'_>) -> Option<Value> {
@@ -117,11 +184,8 @@ impl Encoder<'_> {
             Values::F32(_) | Values::F64(_) => None,
             Values::U8(_) => Some(f64::from(u8::MAX)),
             Values::U16(_) => Some(f64::from(u16::MAX)),
-            other => {
-                let why = format!("colours of type {} have no known range", other.type_name());
-                self.losses.column(source.domain, column.name(), why);
-                return None;
-            }
+            // No set, by its type.
+            _ => return None,
         };
         if let Some(largest) = whole {
             let message = "colours in whole numbers were taken as sRGB and written linear, as glTF has them";
@@ -131,7 +195,7 @@ impl Encoder<'_> {
                 if component < 3 { linear(value) } else { value }
             };
             // Linear single precision tells all 2¹⁶ values apart, so that nothing is lost by rounding.
-            return Some(self.floats(source, column.width(), at).0);
+            return Some(self.floats(source, column.width(), at, plain).0);
         }
         let outside = (0..column.len() * column.width()).any(|i| {
             let value = column.number(i / column.width(), i % column.width());
@@ -142,7 +206,7 @@ impl Encoder<'_> {
         }
         // NaN becomes 0.
         let at = |element: usize, component: usize| column.number(element, component).clamp(0.0, 1.0).max(0.0);
-        Some(self.rounded(source, column.width(), at))
+        Some(self.rounded(source, column.width(), at, plain))
     }
 
     fn custom(&mut self, source: Source<'_>) -> Option<Value> {
@@ -176,7 +240,7 @@ impl Encoder<'_> {
         };
         let at = |element: usize, component: usize| column.number(element, component);
         Some(match component_type {
-            None => self.rounded(source, width, at),
+            None => self.rounded(source, width, at, plain),
             Some(component_type) => {
                 self.bin.whole(width, component_type, source.elements.len(), |vertex, component| {
                     source.elements.get(vertex).map_or(0.0, |element| at(element, component))
@@ -185,31 +249,53 @@ impl Encoder<'_> {
         })
     }
 
-    fn rounded(&mut self, source: Source<'_>, width: usize, at: impl Fn(usize, usize) -> f64) -> Value {
-        let (accessor, rounded) = self.floats(source, width, at);
-        self.note_rounding(rounded, source);
+    fn rounded(
+        &mut self,
+        source: Source<'_>,
+        width: usize,
+        at: impl Fn(usize, usize) -> f64,
+        turn: impl Fn(f64, usize) -> f64,
+    ) -> Value {
+        let (accessor, change) = self.floats(source, width, at, turn);
+        self.note_rounding(change.rounded > 0.0, source);
+        self.changes.add(source.domain, source.column.name(), change);
         accessor
     }
 
-    /// Values in single precision, zero where a vertex has none, and whether any was rounded.
-    fn floats(&mut self, source: Source<'_>, width: usize, at: impl Fn(usize, usize) -> f64) -> (Value, bool) {
+    /// Values in single precision, zero where a vertex has none, and how they were changed. The file has them as `turn`
+    /// gives them, which is its own inverse.
+    fn floats(
+        &mut self,
+        source: Source<'_>,
+        width: usize,
+        at: impl Fn(usize, usize) -> f64,
+        turn: impl Fn(f64, usize) -> f64,
+    ) -> (Value, Change) {
         let mut values = Vec::with_capacity(source.elements.len() * width);
-        let (mut rounded, mut finite) = (false, true);
+        let mut change = Change::default();
         for vertex in 0..source.elements.len() {
             for component in 0..width {
-                let value = source.elements.get(vertex).map_or(0.0, |element| at(element, component));
-                values.push(value as f32);
-                rounded |= f64::from(value as f32) != value && !value.is_nan();
-                finite &= (value as f32).is_finite();
+                let Some(element) = source.elements.get(vertex) else {
+                    values.push(0.0);
+                    continue;
+                };
+                let wanted = at(element, component);
+                let single = turn(wanted, component) as f32;
+                values.push(single);
+                if single.is_finite() {
+                    change.rounded = change.rounded.max((turn(f64::from(single), component) - wanted).abs());
+                } else {
+                    change.not_finite += 1;
+                }
             }
         }
-        if !finite {
+        if change.not_finite > 0 {
             let (domain, name) = (source.domain, source.column.name());
             let message =
                 format!("the {domain} attribute \"{name}\" has values that are not finite in single precision");
             self.findings.push("W-glb-finite", Severity::Warning, Place::Whole, message);
         }
-        (self.bin.floats(width, &values, false), rounded)
+        (self.bin.floats(width, &values, false), change)
     }
 
     fn note_rounding(&mut self, rounded: bool, source: Source<'_>) {
@@ -220,6 +306,11 @@ impl Encoder<'_> {
             self.findings.push("W-glb-single", Severity::Note, Place::Whole, message);
         }
     }
+}
+
+/// What the file has as it is.
+fn plain(number: f64, _: usize) -> f64 {
+    number
 }
 
 /// A normal of unit length in single precision; none if it has no direction. What is a rounded unit normal already

@@ -12,6 +12,8 @@ use crate::placed::Losses;
 /// Materials, textures and images: first those of the shape in their order, then those that only parts of it ask for.
 pub(super) struct Looks<'s> {
     given: &'s [Material],
+    /// The first of the shape's materials with each name.
+    first: HashMap<&'s str, u32>,
     materials: Vec<Value>,
     textures: Vec<Value>,
     images: Vec<Value>,
@@ -27,6 +29,7 @@ impl<'s> Looks<'s> {
     pub fn new(given: &'s [Material], losses: &mut Losses) -> Self {
         let mut looks = Self {
             given,
+            first: HashMap::with_capacity(given.len()),
             materials: Vec::new(),
             textures: Vec::new(),
             images: Vec::new(),
@@ -35,7 +38,8 @@ impl<'s> Looks<'s> {
             texture_of: Vec::new(),
         };
         let mut known: HashMap<String, u32> = HashMap::new();
-        for material in given {
+        for (number, material) in given.iter().enumerate() {
+            looks.first.entry(&material.name).or_insert(number as u32);
             let uri = material.texture.as_deref().and_then(|name| {
                 let uri = uri_of(name);
                 if uri.is_none() {
@@ -60,8 +64,8 @@ impl<'s> Looks<'s> {
 
     /// The material of that name: the first of the shape's, or else one that has nothing but the name.
     pub fn named(&mut self, name: &str) -> u32 {
-        if let Some(given) = self.given.iter().position(|material| material.name == name) {
-            return given as u32;
+        if let Some(&given) = self.first.get(name) {
+            return given;
         }
         let materials = &mut self.materials;
         *self.plain.entry(name.to_owned()).or_insert_with(|| {
@@ -142,6 +146,17 @@ mod tests {
         for name in ["../a.png", "/a.png", "http://a/b.png", ""] {
             assert_eq!(uri_of(name), None, "{name}");
         }
+    }
+
+    #[test]
+    fn many_materials_are_found_in_no_time_in_proportion_to_their_square() {
+        let given: Vec<Material> =
+            (0..100_000).map(|i| Material { name: format!("m{}", i % 99_999), ..Material::default() }).collect();
+        let mut looks = Looks::new(&given, &mut Losses::default());
+        for number in (0..99_999).rev() {
+            assert_eq!(looks.named(&format!("m{number}")), number);
+        }
+        assert_eq!(looks.materials.len(), 100_000);
     }
 
     #[test]

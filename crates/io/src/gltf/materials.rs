@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use shapeloom_shape::Material;
 
+use super::allowance::Allowance;
+use super::ignored::Ignored;
 use super::json::At;
 use crate::memory::Memory;
 use crate::placed::Losses;
@@ -12,10 +14,12 @@ use crate::{Fault, ReadError, SiblingName};
 /// The materials of a document, with the defaults of glTF: white, metal, rough.
 ///
 /// Of textures only the name of the file of the base colour is kept; what else materials say is named as lost.
-pub(super) fn read(
-    document: &At<'_>,
+pub(super) fn read<'j>(
+    document: &At<'j>,
     memory: &mut Memory<'_>,
+    allowance: &mut Allowance,
     losses: &mut Losses,
+    ignored: &mut Ignored<'j>,
 ) -> Result<Vec<Material>, ReadError> {
     let mut materials = Vec::new();
     let mut kept = BTreeSet::new();
@@ -24,10 +28,13 @@ pub(super) fn read(
             memory.take(1, 2 * size_of::<Material>())?;
             let read = from_json(&material, document, &mut kept)?;
             if let Some(name) = &read.texture {
+                // Many materials may name the same one.
+                allowance.take(name.len(), 1, &material)?;
                 memory.take(name.len(), 1)?;
             }
             materials.push(read);
             unread(&material, losses)?;
+            passed_over(&material, ignored)?;
         }
     }
     let lost = document.count("textures")?.saturating_sub(kept.len());
@@ -81,13 +88,25 @@ fn file_of(texture: &At<'_>, document: &At<'_>) -> Result<Option<String>, Box<Fa
     Ok(Some(SiblingName::from_uri(address).map_or(address.to_owned(), |name| name.as_str().to_owned())))
 }
 
+/// Takes down what a material has for other readers, and where its texture is looked up.
+fn passed_over<'j>(material: &At<'j>, ignored: &mut Ignored<'j>) -> Result<(), Box<Fault>> {
+    ignored.of("materials", material);
+    let Some(rough) = material.get("pbrMetallicRoughness")? else { return Ok(()) };
+    ignored.of("materials", &rough);
+    let Some(texture) = rough.get("baseColorTexture")? else { return Ok(()) };
+    ignored.of("textures of materials", &texture);
+    if texture.count_or("texCoord", 0)? > 0 {
+        ignored.texcoord();
+    }
+    Ok(())
+}
+
 /// Names what a material says beyond what shapes keep.
 fn unread(material: &At<'_>, losses: &mut Losses) -> Result<(), Box<Fault>> {
     for (key, what) in [
         ("normalTexture", "normal textures"),
         ("occlusionTexture", "occlusion textures"),
         ("emissiveTexture", "emissive textures"),
-        ("extensions", "extensions of materials"),
     ] {
         if material.get(key)?.is_some() {
             losses.push(what, "materials of shapes have no place for them");

@@ -9,7 +9,7 @@
 //!   and the root's turn in the placements.
 //! - **Positions** are single precision. A geometry that would lose by this because it lies far from the origin is
 //!   stored relative to a local origin, which goes into its node: see [`origin`]. The largest rounding is measured.
-//! - **Texture coordinates** have v running up in shapes and down in glTF: `v = 1 - v'` both ways.
+//! - **Texture coordinates** have v running up in shapes and down in glTF: `v = 1 - v'` both ways, in every set.
 //! - **Colours** in floating columns are linear and stay; whole numbers are sRGB in shapes and linear in glTF.
 //! - **Other columns** of numbers are application-specific attributes: column `heat` is `_heat`. Whole numbers of up to
 //!   16 bits keep their type, larger ones become the narrowest type that holds the values, up to 2²⁴.
@@ -19,14 +19,17 @@
 //! - **Wedges.** Vertices are split exactly where the values of the corners around them differ: see [`split`].
 
 mod accessor;
+mod allowance;
 mod base64;
 mod bin;
 mod buffers;
 mod by_material;
+mod changes;
 mod columns;
 mod container;
 mod document;
 mod encode;
+mod ignored;
 mod json;
 mod lines;
 mod looks;

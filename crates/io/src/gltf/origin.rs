@@ -16,9 +16,9 @@ pub(super) struct SinglePrecision {
 /// own. Up to here at most two bits of 24 are gained, which is not worth a node that is not plain.
 const FAR: f64 = 4.0;
 
-/// The origin about which points are rounded to single precision. The origin is 0 where that is exact or where the points lie near it; else it is
-/// the centre of their box, rounded to a single-precision multiple of a power of two so that every reader gets it
-/// exactly, if this makes the rounding smaller.
+/// The origin about which points are rounded to single precision. It is 0 where that is exact or where the points lie
+/// near it; else it is the centre of their box, rounded to a single-precision multiple of a power of two so that every
+/// reader gets it exactly, if this makes the rounding smaller.
 ///
 /// # Errors
 /// The index of a point whose coordinates single precision cannot hold.

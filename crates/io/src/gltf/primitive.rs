@@ -7,10 +7,12 @@ use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_mesh::{Column, Domain, GeometricGraph, PointCloud, Polyline, TriMesh};
 use shapeloom_shape::Geometry;
 
-use super::accessor::{Accessor, Declared};
+use super::accessor::{Accessor, Declared, is_matrix};
+use super::allowance::Allowance;
 use super::bin::{FLOAT, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
 use super::buffers::Buffer;
 use super::columns;
+use super::ignored::Ignored;
 use super::json::At;
 use super::lines::chain;
 use crate::memory::Memory;
@@ -23,8 +25,10 @@ pub(super) struct Primitives<'a, 'e> {
     pub buffers: &'a [Buffer<'a>],
     pub context: &'e ReadContext,
     pub memory: Memory<'e>,
+    pub allowance: Allowance,
     pub findings: Findings,
     pub losses: Losses,
+    pub ignored: Ignored<'a>,
 }
 
 impl<'a> Primitives<'a, '_> {
@@ -32,8 +36,14 @@ impl<'a> Primitives<'a, '_> {
         Ok(declared.open(&self.document, self.buffers, &self.context.limits)?)
     }
 
+    /// Reserves memory for what a value makes, if the document is large enough for it.
+    pub fn take(&mut self, count: usize, size: usize, at: &At<'_>) -> Result<(), ReadError> {
+        self.allowance.take(count, size, at)?;
+        Ok(self.memory.take(count, size)?)
+    }
+
     /// The geometry of a primitive, if it has one.
-    pub fn read(&mut self, primitive: &At<'_>) -> Result<Option<Arc<Geometry>>, ReadError> {
+    pub fn read(&mut self, primitive: &At<'a>) -> Result<Option<Arc<Geometry>>, ReadError> {
         self.context.exec.check()?;
         if primitive.value.pointer("/extensions/KHR_draco_mesh_compression").is_some() {
             let fault = primitive.fault("E-gltf-feature", "Draco compression", "plain data");
@@ -77,8 +87,7 @@ impl<'a> Primitives<'a, '_> {
         }
         let accessor = self.open(declared)?;
         accessor.expect_backed()?;
-        // Vectors that grow by collecting take at most this much.
-        self.memory.take(accessor.count, size_of::<DVec3>())?;
+        self.take(accessor.count, size_of::<DVec3>(), index)?;
         let at = |element: usize| DVec3::from_array([0, 1, 2].map(|axis| accessor.number(element, axis)));
         let positions: Vec<DVec3> = (0..accessor.count).map(at).collect();
         if !self.context.options.drop_non_finite
@@ -99,13 +108,17 @@ impl<'a> Primitives<'a, '_> {
             if semantic == "POSITION" {
                 continue;
             }
+            if !columns::is_known(semantic) && is_matrix(&self.document, &index)? {
+                self.losses.column(Domain::Vertex, semantic, "columns of shapes have no place for matrices");
+                continue;
+            }
             let accessor = self.open(Declared::read(&self.document, &index)?)?;
             if accessor.count != count {
                 let found = accessor.count.to_string();
                 return Err(accessor.fault("count", "E-gltf-count", found, &format!("{count}, as of POSITION")).into());
             }
             let elements = accessor.count.saturating_mul(accessor.width);
-            self.memory.take(elements, size_of::<f64>())?;
+            self.take(elements, size_of::<f64>(), &index)?;
             match columns::column(semantic, &accessor)? {
                 Ok(column) if columns.iter().all(|known| known.name() != column.name()) => columns.push(column),
                 Ok(_) => self.losses.column(Domain::Vertex, semantic, "another attribute has that name in shapes"),
@@ -131,7 +144,7 @@ impl<'a> Primitives<'a, '_> {
         let accessor = self.open(declared)?;
         accessor.expect_backed()?;
         // Indices, and triangles made from them.
-        self.memory.take(accessor.count, 4 * size_of::<u32>())?;
+        self.take(accessor.count, 4 * size_of::<u32>(), &index)?;
         let indices: Vec<u32> = (0..accessor.count).map(|element| accessor.index(element)).collect();
         if let Some(element) = indices.iter().position(|&index| index as usize >= vertices) {
             let expected = format!("an index below {vertices}");
@@ -143,9 +156,14 @@ impl<'a> Primitives<'a, '_> {
     }
 
     /// The indices, or where there are none those of all vertices in order: an unindexed primitive means the same.
-    fn in_order(&mut self, indices: Option<Vec<u32>>, vertices: usize) -> Result<Vec<u32>, ReadError> {
+    fn in_order(
+        &mut self,
+        primitive: &At<'_>,
+        indices: Option<Vec<u32>>,
+        vertices: usize,
+    ) -> Result<Vec<u32>, ReadError> {
         if indices.is_none() {
-            self.memory.take(vertices, 4 * size_of::<u32>())?;
+            self.take(vertices, 4 * size_of::<u32>(), primitive)?;
         }
         Ok(indices.unwrap_or_else(|| (0..vertices as u32).collect()))
     }
@@ -162,7 +180,7 @@ impl<'a> Primitives<'a, '_> {
         vertices: Vertices,
         indices: Option<Vec<u32>>,
     ) -> Result<Geometry, ReadError> {
-        let indices = self.in_order(indices, vertices.positions.len())?;
+        let indices = self.in_order(primitive, indices, vertices.positions.len())?;
         let triangles = match mode {
             5 => strip(&indices),
             6 => fan(&indices),
@@ -186,7 +204,7 @@ impl<'a> Primitives<'a, '_> {
         vertices: Vertices,
         indices: Option<Vec<u32>>,
     ) -> Result<Geometry, ReadError> {
-        let indices = self.in_order(indices, vertices.positions.len())?;
+        let indices = self.in_order(primitive, indices, vertices.positions.len())?;
         if !indices.len().is_multiple_of(2) {
             self.left_over(primitive, "segment");
         }
@@ -212,13 +230,18 @@ struct Vertices {
 
 impl Vertices {
     /// The vertices at these indices; all of them in order where there are none.
-    fn gathered(self, sources: Option<&[u32]>, primitives: &mut Primitives<'_, '_>) -> Result<Self, ReadError> {
+    fn gathered(
+        self,
+        sources: Option<&[u32]>,
+        primitives: &mut Primitives<'_, '_>,
+        at: &At<'_>,
+    ) -> Result<Self, ReadError> {
         let count = self.positions.len();
         let Some(sources) = sources.filter(|sources| !sources.iter().copied().eq(0..count as u32)) else {
             return Ok(self);
         };
         let bytes: usize = self.columns.iter().map(Column::memory_bytes).sum::<usize>() + count * size_of::<DVec3>();
-        primitives.memory.take(sources.len(), 2 * (bytes.div_ceil(count.max(1)) + 4))?;
+        primitives.take(sources.len(), 2 * (bytes.div_ceil(count.max(1)) + 4), at)?;
         Ok(Self {
             positions: sources.iter().map(|&source| self.positions[source as usize]).collect(),
             columns: self.columns.iter().map(|column| column.gathered(sources)).collect(),
@@ -231,7 +254,7 @@ impl Vertices {
         primitives: &mut Primitives<'_, '_>,
         at: &At<'_>,
     ) -> Result<Geometry, ReadError> {
-        let vertices = self.gathered(sources, primitives)?;
+        let vertices = self.gathered(sources, primitives, at)?;
         let mut cloud = PointCloud::new(vertices.positions);
         for column in vertices.columns {
             cloud.insert_attribute(column).map_err(|error| at.fault("E-gltf-mesh", error.to_string(), "points"))?;
@@ -246,7 +269,7 @@ impl Vertices {
         primitives: &mut Primitives<'_, '_>,
         at: &At<'_>,
     ) -> Result<Geometry, ReadError> {
-        let vertices = self.gathered(sources, primitives)?;
+        let vertices = self.gathered(sources, primitives, at)?;
         let mut line = Polyline::new(vertices.positions, closed);
         for column in vertices.columns {
             line.insert_attribute(column).map_err(|error| at.fault("E-gltf-mesh", error.to_string(), "a line"))?;

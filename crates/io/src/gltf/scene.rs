@@ -6,6 +6,8 @@ use serde_json::Value;
 use shapeloom_core::glam::{DMat3, DMat4, DQuat, DVec3};
 use shapeloom_core::{Affine, Category, Findings, Place, Severity};
 
+use super::allowance::Allowance;
+use super::ignored::Ignored;
 use super::json::At;
 use crate::memory::Memory;
 use crate::{Fault, ReadContext, ReadError};
@@ -24,6 +26,8 @@ pub(super) struct Placed<'j> {
 pub(super) fn placed_nodes<'j>(
     document: &At<'j>,
     memory: &mut Memory<'_>,
+    allowance: &Allowance,
+    ignored: &mut Ignored<'j>,
     findings: &mut Findings,
     context: &ReadContext,
 ) -> Result<Vec<Placed<'j>>, ReadError> {
@@ -39,7 +43,7 @@ pub(super) fn placed_nodes<'j>(
     memory.take(count, size_of::<[usize; 8]>() + 2 * size_of::<At<'_>>() + 32)?;
     let Links { children, mut ways } = links(document, count)?;
     refuse_cycles(&children)?;
-    let roots = roots(document, &ways)?;
+    let roots = roots(document, &ways, ignored)?;
     roots.iter().for_each(|&root| ways[root] += 1);
 
     let mut stack: Vec<Entry> = Vec::new();
@@ -52,6 +56,8 @@ pub(super) fn placed_nodes<'j>(
     };
     let nodes: Vec<At<'j>> = nodes.elements()?.collect();
     let mut places = BTreeSet::new();
+    // Every node once, and as many instances as there may be parts.
+    let most = context.limits.max_elements.min(count as u64 + allowance.most_parts());
     let mut steps = 0u64;
     let mut placed = Vec::new();
     while let Some(Entry { node, above, depth }) = stack.pop() {
@@ -65,11 +71,12 @@ pub(super) fn placed_nodes<'j>(
         if steps.is_multiple_of(4096) {
             context.exec.check()?;
         }
-        if steps > context.limits.max_elements {
+        if steps > most {
             let found = "a node that is reached in very many ways";
-            let fault = at.fault("E-gltf-limit", found, format!("at most {} in all", context.limits.max_elements));
+            let fault = at.fault("E-gltf-limit", found, format!("at most {most} in all"));
             return Err(fault.category(Category::OverLimit).into());
         }
+        ignored.of("nodes", at);
         let placement = above * local(at, node, findings)?;
         if ways[node] > 1 {
             // Ways may double with every level: each takes its memory from the budget.
@@ -174,13 +181,14 @@ fn refuse_cycles(children: &[Vec<usize>]) -> Result<(), Box<Fault>> {
 }
 
 /// The roots of the scene to show; without scenes, all nodes without a parent.
-fn roots(document: &At<'_>, ways: &[u32]) -> Result<Vec<usize>, Box<Fault>> {
+fn roots<'j>(document: &At<'j>, ways: &[u32], ignored: &mut Ignored<'j>) -> Result<Vec<usize>, Box<Fault>> {
     if document.count("scenes")? == 0 {
         return Ok((0..ways.len()).filter(|&node| ways[node] == 0).collect());
     }
     let first = Value::from(0);
     let index = document.get("scene")?.unwrap_or(At { value: &first, path: "/scene".into() });
     let scene = document.element("scenes", &index)?;
+    ignored.of("scenes", &scene);
     let Some(list) = scene.get("nodes")? else {
         return Ok(Vec::new());
     };
@@ -238,7 +246,9 @@ mod tests {
 
     fn walk(document: &Value, context: &ReadContext) -> Result<Vec<(String, Affine)>, ReadError> {
         let mut memory = Memory::new(&context.exec);
-        let placed = placed_nodes(&At::root(document), &mut memory, &mut Findings::default(), context)?;
+        let (allowance, mut findings, mut ignored) = (Allowance::new(0), Findings::default(), Ignored::default());
+        let root = At::root(document);
+        let placed = placed_nodes(&root, &mut memory, &allowance, &mut ignored, &mut findings, context)?;
         Ok(placed.into_iter().map(|placed| (placed.node.path, placed.placement)).collect())
     }
 
@@ -306,8 +316,11 @@ mod tests {
         }
         nodes.push(json!({"mesh": 0}));
         let context =
-            ReadContext { exec: shapeloom_core::Exec::default().with_memory(8 << 20), ..ReadContext::default() };
+            ReadContext { exec: shapeloom_core::Exec::default().with_memory(4 << 20), ..ReadContext::default() };
         assert!(matches!(walk(&json!({"nodes": nodes}), &context), Err(ReadError::OverBudget(_))));
+        // Without a budget, what the length of the document allows.
+        let error = walk(&json!({"nodes": nodes}), &ReadContext::default()).unwrap_err();
+        assert_eq!(error.fault().unwrap().code, "E-gltf-limit");
         let mut context = ReadContext::default();
         context.limits.max_elements = 1000;
         assert_eq!(walk(&json!({"nodes": nodes}), &context).unwrap_err().fault().unwrap().code, "E-gltf-limit");

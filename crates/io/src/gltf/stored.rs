@@ -8,7 +8,7 @@ use shapeloom_shape::{Geometry, Part};
 
 use super::by_material::{by_material, material_column};
 use super::document::Builder;
-use super::encode::{Elements, Encoder, Source};
+use super::encode::{Elements, Encoder, Sets, Source};
 use super::looks::Looks;
 use super::origin::{about, single_precision};
 use super::split::{Split, split};
@@ -82,10 +82,11 @@ pub(super) fn store(builder: &mut Builder<'_>, index: usize, part: &Part) -> Res
     })?;
     let mut primitives = Vec::new();
     if let Geometry::TriMesh(mesh) = &*geometry {
-        let split = split(points.len(), mesh.triangles(), &wedge_columns(&geometry)).ok_or_else(|| {
-            let (found, max) = (mesh.triangles().len() as u64 * 3, u64::from(u32::MAX) - 1);
-            WriteError::TooLarge { format: builder.format, what: "split vertices", found, max }
-        })?;
+        let split =
+            split(points.len(), mesh.triangles(), &wedge_columns(&geometry), builder.exec)?.ok_or_else(|| {
+                let (found, max) = (mesh.triangles().len() as u64 * 3, u64::from(u32::MAX) - 1);
+                WriteError::TooLarge { format: builder.format, what: "split vertices", found, max }
+            })?;
         for (material, split) in by_material(split, material_column(mesh)) {
             let points: Vec<DVec3> = split.vertices.iter().map(|&vertex| points[vertex as usize]).collect();
             let mut primitive = primitive(builder, mode, &geometry, Some(&split), &points, single.origin);
@@ -144,15 +145,20 @@ fn encode(
         }
     }
     let spare_normals = || split.map(|split| facet_normals(split, points));
+    let wedge = columns_of(geometry, Domain::Wedge);
+    let hidden = |column: &&Column| wedge.is_some_and(|wedge| wedge.get(column.name()).is_some());
+    let vertex = || columns_of(geometry, Domain::Vertex).into_iter().flatten();
+    let written: Vec<&Column> = vertex().filter(|column| !hidden(column)).chain(wedge.into_iter().flatten()).collect();
     let mut encoder = Encoder {
         bin: &mut builder.bin,
         losses: &mut builder.losses,
         findings: &mut builder.findings,
+        changes: &mut builder.changes,
+        sets: Sets::of(&written),
         spare_normals: &spare_normals,
     };
-    let wedge = columns_of(geometry, Domain::Wedge);
-    for column in columns_of(geometry, Domain::Vertex).into_iter().flatten() {
-        if wedge.is_some_and(|wedge| wedge.get(column.name()).is_some()) {
+    for column in vertex() {
+        if hidden(&column) {
             let why = "glTF has one attribute of that name, and the wedge attribute took it";
             encoder.losses.column(Domain::Vertex, column.name(), why);
             continue;

@@ -31,7 +31,7 @@ fn shape(mesh: TriMesh, materials: Vec<Material>) -> Shape {
     Shape { materials, up: Some(UpAxis::Y), ..Shape::new(part) }
 }
 
-fn json_of(glb: &[u8]) -> Value {
+pub(super) fn json_of(glb: &[u8]) -> Value {
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
     serde_json::from_slice(&glb[20..20 + length]).unwrap()
 }

@@ -1,8 +1,10 @@
 //! Files written, read by us and by another reader, and damaged.
 
 mod json_files;
+mod limits;
 mod lines;
 mod looks;
+mod losses;
 mod sparse;
 
 use std::sync::Arc;
@@ -89,7 +91,7 @@ fn scenes_come_back_and_stay_the_same_bits() {
     let shape = scene();
     let (file, report) = to_glb(&shape).unwrap();
     assert_eq!(report.deviation, Deviation::Exact);
-    assert!(report.losses.is_empty(), "{:?}", report.losses);
+    assert!(report.losses.iter().all(|loss| loss.what == "vertex attribute \"normal\""), "{:?}", report.losses);
     let back = from_glb(&file);
     assert!(back.findings.is_empty() && back.losses.is_empty());
     let read = &back.shape;
@@ -238,10 +240,12 @@ fn what_does_not_fit_is_said() {
         "vertex attribute \"wide\"",
         "0 points of the point-cloud of part 1",
         "texture \"../brick.png\"",
+        // Scaled and rounded, and replaced.
+        "vertex attribute \"normal\"",
     ] {
         assert!(whats.contains(&what), "{what} in {whats:?}");
     }
-    assert_eq!(whats.len(), 8);
+    assert_eq!(whats.len(), 10);
     assert!(report.findings.iter().any(|finding| finding.code == "W-glb-up"));
     let back = from_glb(&file).shape;
     let points = crate::placed::points_of(&back.parts[0].geometry).unwrap();
@@ -482,7 +486,7 @@ fn instances_beyond_the_budget_are_refused() {
             "buffers": [{"byteLength": 12, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAA"}]
         })
     };
-    let small = ReadContext { exec: Exec::default().with_memory(8 << 20), ..ReadContext::default() };
+    let small = ReadContext { exec: Exec::default().with_memory(4 << 20), ..ReadContext::default() };
     let attempt = |count| read(shape(count).to_string().as_bytes(), format_by_id("gltf").unwrap(), &small);
     assert_eq!(attempt(50).unwrap().shape.parts.len(), 2500);
     assert!(matches!(attempt(400), Err(ReadError::OverBudget(_))));
@@ -491,4 +495,32 @@ fn instances_beyond_the_budget_are_refused() {
     let context = ReadContext { exec, ..ReadContext::default() };
     let error = read(text.to_string().as_bytes(), format_by_id("gltf").unwrap(), &context).unwrap_err();
     assert_eq!(error.code(), "E-gltf-buffer");
+}
+
+#[test]
+fn an_attribute_of_matrices_is_lost_alone() {
+    for (kind, semantic) in [("MAT2", "_FRAME"), ("MAT3", "_FRAME"), ("MAT4", "_FRAME"), ("MAT4", "BONES")] {
+        let read = document(|document| {
+            document["meshes"][0]["primitives"][0]["attributes"][semantic] = json!(2);
+            let matrices = json!({"bufferView": 0, "componentType": 5126, "count": 3, "type": kind});
+            document["accessors"].as_array_mut().unwrap().push(matrices);
+        });
+        let read = read.unwrap();
+        assert_eq!(mesh(&read.shape, 0).triangles(), [[0, 1, 2]]);
+        let said: Vec<String> = read.losses.iter().map(ToString::to_string).collect();
+        assert_eq!(said.len(), 1);
+        assert!(
+            said[0].contains(&format!("vertex attribute \"{semantic}\"")) && said[0].contains("matrices"),
+            "{said:?}"
+        );
+    }
+    // Where glTF says what it must be, it is an error as before.
+    for semantic in ["NORMAL", "TEXCOORD_0", "COLOR_0", "POSITION"] {
+        let error = document(|document| {
+            document["meshes"][0]["primitives"][0]["attributes"][semantic] = json!(2);
+            let matrices = json!({"bufferView": 0, "componentType": 5126, "count": 3, "type": "MAT3"});
+            document["accessors"].as_array_mut().unwrap().push(matrices);
+        });
+        assert_eq!(error.unwrap_err().code(), "E-gltf-type");
+    }
 }
