@@ -58,9 +58,12 @@ struct Ring<'a> {
     convex: Marks,
     /// Convex corners that may be ears: no reflex corner is known that is in the way.
     candidates: Marks,
-    /// For a reflex corner the first of the corners whose triangles it was found in, and for each of those the next.
+    /// For a reflex corner the first entry of the list of corners whose triangles it was found in.
     first_blocked: Vec<u32>,
-    next_blocked: Vec<u32>,
+    /// Entries of all of these lists: a corner, and the next entry.
+    blocked: Vec<(u32, u32)>,
+    /// The first of the entries that are free again.
+    unused: u32,
     grid: Grid,
     /// How many reflex corners were looked at.
     looked_at: usize,
@@ -78,7 +81,8 @@ impl<'a> Ring<'a> {
             convex: Marks::new(count),
             candidates: Marks::new(count),
             first_blocked: vec![NOTHING; count],
-            next_blocked: vec![NOTHING; count],
+            blocked: Vec::new(),
+            unused: NOTHING,
             grid: Grid::default(),
             looked_at: 0,
         };
@@ -119,7 +123,18 @@ impl<'a> Ring<'a> {
             return true;
         };
         self.candidates.set(corner, false);
-        self.next_blocked[corner] = std::mem::replace(&mut self.first_blocked[found as usize], corner as u32);
+        let entry = (corner as u32, self.first_blocked[found as usize]);
+        self.first_blocked[found as usize] = match self.blocked.get_mut(self.unused as usize) {
+            Some(free) => {
+                let at = std::mem::replace(&mut self.unused, free.1);
+                *free = entry;
+                at
+            }
+            None => {
+                self.blocked.push(entry);
+                self.blocked.len() as u32 - 1
+            }
+        };
         false
     }
 
@@ -146,13 +161,14 @@ impl<'a> Ring<'a> {
 
     /// Makes the corners in whose triangles a corner was found candidates again: it is no longer in their way.
     fn free(&mut self, corner: usize) {
-        let mut blocked = std::mem::replace(&mut self.first_blocked[corner], NOTHING);
-        while blocked != NOTHING {
-            let next = std::mem::replace(&mut self.next_blocked[blocked as usize], NOTHING);
+        let mut at = std::mem::replace(&mut self.first_blocked[corner], NOTHING);
+        while let Some(entry) = self.blocked.get_mut(at as usize) {
+            let (blocked, next) = *entry;
+            entry.1 = std::mem::replace(&mut self.unused, at);
             if self.convex.is_set(blocked as usize) {
                 self.candidates.set(blocked as usize, true);
             }
-            blocked = next;
+            at = next;
         }
     }
 }
@@ -332,5 +348,80 @@ mod tests {
         assert!(!clip(&[DVec2::ZERO; 6]).1);
         assert!(!clip(&[DVec2::ZERO, DVec2::X, DVec2::X * 2.0, DVec2::X * 3.0]).1);
         assert!(!clip(&[DVec2::NAN; 5]).1);
+    }
+
+    /// The same by walking around and looking at every corner each time.
+    fn plainly(outline: &[DVec2]) -> Vec<[u32; 3]> {
+        let mut ring: Vec<usize> = (0..outline.len()).collect();
+        let (mut at, mut triangles) = (0, Vec::new());
+        while ring.len() > 3 {
+            let count = ring.len();
+            let corners = |k: usize| [ring[(k + count - 1) % count], ring[k % count], ring[(k + 1) % count]];
+            let turn = |k: usize| {
+                let [a, b, c] = corners(k).map(|i| outline[i]);
+                orient2d(a, b, c)
+            };
+            let convex = |k: &usize| turn(*k) == Ordering::Greater;
+            let is_ear = |k: &usize| {
+                let triangle = corners(*k).map(|i| outline[i]);
+                let [a, b, c] = triangle;
+                convex(k)
+                    && !(0..count).filter(|other| !convex(other)).any(|other| {
+                        let p = outline[ring[other]];
+                        let inside = [(a, b), (b, c), (c, a)].iter().all(|&(a, b)| orient2d(a, b, p) != Ordering::Less);
+                        !triangle.contains(&p) && inside
+                    })
+            };
+            let around = || (0..count).map(|step| (at + step) % count);
+            let cut = around().find(is_ear).or_else(|| around().find(convex)).unwrap_or(at);
+            triangles.push(corners(cut).map(|i| i as u32));
+            ring.remove(cut);
+            at = (cut + 1) % ring.len();
+        }
+        let last = at % 3;
+        triangles.push([ring[(last + 2) % 3], ring[last], ring[(last + 1) % 3]].map(|i| i as u32));
+        triangles
+    }
+
+    /// Simple, crossing, touching and flat outlines give the triangles that a plain walk gives, in its order.
+    #[test]
+    fn ears_are_those_of_a_plain_walk() {
+        let mut state = 5u64;
+        let mut next = |bound: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % bound
+        };
+        for round in 0..400 {
+            let count = 4 + next(70) as usize;
+            let fine = if round % 3 == 0 { 6 } else { 1 << 20 };
+            let outline: Vec<DVec2> = (0..count)
+                .map(|k| match round % 4 {
+                    // A star with random spikes.
+                    0 | 1 => {
+                        let angle = k as f64 / count as f64 * std::f64::consts::TAU;
+                        DVec2::from_angle(angle) * (1 + next(fine)) as f64
+                    }
+                    _ => DVec2::new(next(fine) as f64, next(fine) as f64),
+                })
+                .collect();
+            assert_eq!(clip(&outline).0, plainly(&outline), "{outline:?}");
+        }
+        // Nothing convex, and everything in one point.
+        for outline in [vec![DVec2::ONE; 30], (0..30).map(|k| DVec2::new(f64::from(k), 0.0)).collect()] {
+            assert_eq!(clip(&outline).0, plainly(&outline));
+        }
+    }
+
+    #[test]
+    fn marks_are_found_going_round() {
+        let mut marks = Marks::new(20_000);
+        assert_eq!(marks.next(7), None);
+        for corner in [3, 64, 5000, 19_999] {
+            marks.set(corner, true);
+        }
+        let found = [0, 3, 4, 64, 65, 5000, 5001, 19_999].map(|from| marks.next(from).unwrap());
+        assert_eq!(found, [3, 3, 64, 64, 5000, 5000, 19_999, 19_999]);
+        marks.set(19_999, false);
+        assert_eq!((marks.next(5001), marks.is_set(64)), (Some(3), true));
     }
 }
