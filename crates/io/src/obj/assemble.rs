@@ -17,15 +17,13 @@ use super::read::Whole;
 use super::sides::Sides;
 use super::statements::NONE;
 use crate::memory::Memory;
+use crate::parts::most_parts;
 use crate::{Fault, ReadContext, ReadError, ReadShape, audit};
 
 /// The column of a vertex's rational weight, which polygons do not use.
 pub(super) const WEIGHT: &str = "weight";
 /// The column of the object that a face belongs to, where objects share vertices.
 pub(super) const OBJECT: &str = "object";
-/// A part takes about a kilobyte: beyond this many, and one for every 32 bytes of the file, they would take memory out of
-/// proportion to it. An object with a triangle of its own takes more text.
-const MANY_PARTS: usize = 1 << 14;
 
 pub(super) fn assemble(
     mut whole: Whole<'_>,
@@ -35,7 +33,7 @@ pub(super) fn assemble(
 ) -> Result<ReadShape, ReadError> {
     let mut losses = Vec::new();
     let statements = Statements::read(&whole, memory, findings)?;
-    let most = MANY_PARTS + whole.text.len() / 32;
+    let most = most_parts(whole.text.len());
     if statements.objects.len() > most {
         let found = format!("{} objects", statements.objects.len() - 1);
         let fault = Fault::new("E-obj-limit", Place::Whole, found, format!("at most {most} in a file of this length"));

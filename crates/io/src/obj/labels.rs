@@ -9,7 +9,7 @@ use super::read::Whole;
 use super::statements::EventKind;
 use crate::ReadError;
 use crate::memory::Memory;
-use crate::text::{Scanner, parse_count, quoted};
+use crate::text::{Scanner, lossy, parse_count, quoted};
 
 /// Names are repeated for every part that has them: longer ones would take memory out of proportion to the file.
 const MOST_NAME: usize = 1024;
@@ -17,32 +17,33 @@ const MOST_NAME: usize = 1024;
 /// Names that occur, each once, the first one empty: what holds before any statement.
 pub(super) struct Names {
     pub list: Vec<String>,
-    known: HashMap<String, u32>,
+    known: HashMap<Vec<u8>, u32>,
 }
 
 impl Default for Names {
     fn default() -> Self {
-        Self { list: vec![String::new()], known: HashMap::from([(String::new(), 0)]) }
+        Self { list: vec![String::new()], known: HashMap::from([(Vec::new(), 0)]) }
     }
 }
 
 impl Names {
-    fn id(&mut self, words: &[u8], memory: &mut Memory<'_>) -> Result<u32, ReadError> {
-        // Several names are kept as one, a space between them.
-        let mut name = String::new();
-        for word in words.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
-            if !name.is_empty() {
-                name.push(' ');
-            }
-            name.push_str(&String::from_utf8_lossy(word));
-        }
-        if let Some(&id) = self.known.get(&name) {
+    fn id(
+        &mut self,
+        words: &[u8],
+        place: Place,
+        memory: &mut Memory<'_>,
+        findings: &mut Findings,
+    ) -> Result<u32, ReadError> {
+        // Several names are kept as one, a space between them. They are told apart by their bytes.
+        let parts: Vec<&[u8]> = words.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
+        let bytes = parts.join(&b' ');
+        if let Some(&id) = self.known.get(&bytes) {
             return Ok(id);
         }
-        memory.take(1, 4 * (name.len() + size_of::<String>()))?;
+        memory.take(1, 4 * (bytes.len() + size_of::<String>()))?;
         let id = self.list.len() as u32;
-        self.list.push(name.clone());
-        self.known.insert(name, id);
+        self.list.push(lossy(&bytes, place, findings).into_owned());
+        self.known.insert(bytes, id);
         Ok(id)
     }
 }
@@ -98,9 +99,10 @@ impl Statements {
         let mut from = [0usize; 4];
         for event in &whole.events {
             let mut words = &whole.text[event.start..event.end];
+            let place = Place::Byte(event.start as u64);
             if words.len() > MOST_NAME && event.kind != EventKind::Library {
                 let message = format!("a name of {} bytes was cut after {MOST_NAME}", words.len());
-                findings.push("W-obj-name", Severity::Warning, Place::Byte(event.start as u64), message);
+                findings.push("W-obj-name", Severity::Warning, place.clone(), message);
                 words = &words[..MOST_NAME];
             }
             let mut next = labels;
@@ -108,12 +110,12 @@ impl Statements {
                 EventKind::Object => {
                     memory.take(1, 2 * (words.len() + size_of::<String>()))?;
                     next.object = all.objects.len() as u32;
-                    all.objects.push(String::from_utf8_lossy(words).into_owned());
+                    all.objects.push(lossy(words, place, findings).into_owned());
                 }
-                EventKind::Group => next.group = all.groups.id(words, memory)?,
+                EventKind::Group => next.group = all.groups.id(words, place, memory, findings)?,
                 EventKind::Material => {
                     let none = words == super::NO_MATERIAL.as_bytes();
-                    next.material = if none { 0 } else { all.materials.id(words, memory)? };
+                    next.material = if none { 0 } else { all.materials.id(words, place, memory, findings)? };
                     if all.material_places.len() < all.materials.list.len() {
                         all.material_places.push(event.start);
                     }

@@ -289,6 +289,17 @@ fn what_is_written_is_read_again() {
 }
 
 #[test]
+fn names_in_other_encodings_are_kept_apart_and_told() {
+    let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\no caf\xe9\ng a\xe8\nf 1 2 3\ng a\xe9\nf 3 2 1\n";
+    let read = read(text, format_by_id("obj").unwrap(), &ReadContext::default()).unwrap();
+    let groups = geometry::<TriMesh>(&read.shape, 0).attribute(Domain::Face, GROUP).unwrap();
+    assert_ne!(groups.number(0, 0), groups.number(1, 0));
+    assert_eq!(read.shape.parts[0].name, "caf\u{fffd}");
+    let told = read.findings.iter().next().unwrap();
+    assert_eq!((told.code, told.count, &told.places[0]), ("W-text-encoding", 3, &Place::line(4)));
+}
+
+#[test]
 fn limits_and_budgets_hold() {
     let polygon = Limits { max_polygon: 4, ..Limits::default() };
     let context = ReadContext { limits: polygon, ..ReadContext::default() };
