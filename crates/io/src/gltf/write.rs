@@ -3,11 +3,13 @@
 use std::io::Write;
 
 use shapeloom_core::Report;
-use shapeloom_shape::Shape;
+use shapeloom_mesh::{Domain, MATERIAL, Values};
+use shapeloom_shape::{Part, Shape};
 
 use super::document::{Document, document};
 use super::{GLB, GLTF, base64};
 use crate::options::Instances;
+use crate::placed::columns_of;
 use crate::{WriteContext, WriteError};
 
 const JSON_CHUNK: u32 = u32::from_le_bytes(*b"JSON");
@@ -65,14 +67,28 @@ fn flatten(context: &WriteContext) -> bool {
     context.options.instances == Instances::Flatten
 }
 
-/// About the bytes of the file's buffer, and beside it split vertices and those of each material.
+/// What the values and text of a primitive with its node and accessors take, and of a material, in bytes: measured.
+const PRIMITIVE: u64 = 8 << 10;
+const MATERIAL_BYTES: u64 = 2 << 10;
+
+/// About the bytes of the file's buffer, and beside it split vertices and those of each material; and of the document.
 fn working_bytes(shape: &Shape, context: &WriteContext) -> u64 {
     let written = if flatten(context) {
         shape.parts.iter().map(|part| part.geometry.memory_bytes() as u64).fold(0, u64::saturating_add)
     } else {
         shape.memory_bytes() as u64
     };
-    written.saturating_mul(3)
+    let primitives =
+        |part: &Part| match columns_of(&part.geometry, Domain::Face).and_then(|columns| columns.get(MATERIAL)) {
+            Some(column) => match column.values() {
+                Values::Text { names, .. } => names.len() as u64,
+                _ => 1,
+            },
+            None => 1,
+        };
+    let primitives = shape.parts.iter().map(primitives).fold(0, u64::saturating_add);
+    let document = primitives.saturating_mul(PRIMITIVE).saturating_add(shape.materials.len() as u64 * MATERIAL_BYTES);
+    written.saturating_mul(3).saturating_add(document)
 }
 
 /// A document with its one buffer; glTF has no buffers without bytes.
