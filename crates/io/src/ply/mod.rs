@@ -23,6 +23,7 @@ mod read;
 #[cfg(test)]
 mod read_tests;
 mod rows;
+mod shared;
 mod strips;
 #[cfg(test)]
 mod tests;

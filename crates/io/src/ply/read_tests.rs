@@ -499,3 +499,24 @@ fn meshes_without_faces_stay_meshes() {
         }
     }
 }
+
+/// Edges between vertices of faces stay on them, however often the file goes through.
+#[test]
+fn edges_beside_faces_bring_no_vertices_of_their_own() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property uchar tag\nelement face 1\nproperty list uchar int vertex_indices\nelement edge 2\n\
+        property int vertex1\nproperty int vertex2\nend_header\n0 0 0 1\n0 0 0 2\n1 0 0 3\n0 1 0 4\n3 0 2 3\n1 2\n1 3\n";
+    let first = crate::read(text.as_bytes(), &super::FORMAT, &crate::ReadContext::default()).unwrap().shape;
+    let mut shape = first.clone();
+    for _ in 0..3 {
+        let mut bytes = Vec::new();
+        let report = crate::write(&shape, &super::FORMAT, &crate::WriteContext::default(), &mut bytes).unwrap();
+        assert!(
+            report.figures.iter().any(|figure| figure.name == "vertices" && figure.value == 4.0),
+            "{:?}",
+            report.figures
+        );
+        shape = crate::read(&bytes, &super::FORMAT, &crate::ReadContext::default()).unwrap().shape;
+        assert_eq!(shape.parts, first.parts);
+    }
+}

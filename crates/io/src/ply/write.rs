@@ -12,6 +12,7 @@ use super::encode::{Ascii, Big, Laid, Little};
 use super::header::OBJ_INFO;
 use super::plan::{CORNERS, ENDS};
 use super::properties::{Properties, Set, count_type, put_count, safe};
+use super::shared::shared_vertices;
 use super::types::Type;
 use crate::placed::{Losses, columns_of, edge_columns_of, frame_losses, placed_part, points_of};
 use crate::sink::Sink;
@@ -41,6 +42,8 @@ pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) 
 /// What is written.
 struct File<'s> {
     parts: &'s [Arc<Geometry>],
+    /// The vertices of others that serve a part, where it has none of its own in the file.
+    shared: Vec<Option<Vec<u32>>>,
     comments: Vec<&'s str>,
     vertices: usize,
     faces: usize,
@@ -60,7 +63,9 @@ struct File<'s> {
 
 impl<'s> File<'s> {
     fn new(shape: &'s Shape, parts: &'s [Arc<Geometry>], losses: &mut Losses) -> Result<Self, WriteError> {
-        let vertices: usize = parts.iter().filter_map(|part| points_of(part)).map(<[_]>::len).sum();
+        let shared = shared_vertices(parts);
+        let own = || parts.iter().zip(&shared).filter(|(_, shared)| shared.is_none()).map(|(part, _)| part);
+        let vertices: usize = own().filter_map(|part| points_of(part)).map(<[_]>::len).sum();
         if vertices > i32::MAX as usize {
             let (found, max) = (vertices as u64, i32::MAX as u64);
             return Err(WriteError::TooLarge { format: FORMAT.id, what: "vertices", found, max });
@@ -71,12 +76,15 @@ impl<'s> File<'s> {
             parts.iter().map(|part| (count(part), columns_of(part, domain))).collect()
         };
         let edge_sets: Vec<Set<'_>> = parts.iter().map(|part| (edge_count(part), edge_columns_of(part))).collect();
-        let point_count = |part: &Geometry| points_of(part).map_or(0, <[_]>::len);
+        let point_count = |part: &Arc<Geometry>| points_of(part).map_or(0, <[_]>::len);
+        let vertex_sets: Vec<Set<'_>> =
+            own().map(|part| (point_count(part), columns_of(part, Domain::Vertex))).collect();
         let wedge = wedge_types(parts, losses);
         let face_names: &[&str] =
             if wedge.is_some() { &[CORNERS[0], CORNERS[1], TEXCOORD] } else { &[CORNERS[0], CORNERS[1]] };
         let mut file = Self {
             parts,
+            shared: Vec::new(),
             comments: Vec::new(),
             vertices,
             faces: parts.iter().map(|part| face_count(part)).sum(),
@@ -88,12 +96,13 @@ impl<'s> File<'s> {
             edges: parts.iter().map(|part| edge_count(part)).sum(),
             position: Type::of_floats(coordinates),
             corners: count_type(most),
-            vertex: Properties::new(&sets(point_count, Domain::Vertex), "vertex", &["x", "y", "z"], losses),
+            vertex: Properties::new(&vertex_sets, "vertex", &["x", "y", "z"], losses),
             face: Properties::new(&sets(face_count, Domain::Face), "face", face_names, losses),
             edge: Properties::new(&edge_sets, "edge", &ENDS, losses),
             wedge,
             tables: Vec::new(),
         };
+        file.shared = shared;
         for comment in &shape.comments {
             let before = file.comments.len();
             file.comments.extend(comment.split(['\n', '\r']).filter(|line| !line.is_empty() || comment.is_empty()));
@@ -131,18 +140,20 @@ impl<'s> File<'s> {
 
     fn write<L: Laid>(&self, sink: &mut Sink<'_>) -> Result<(), WriteError> {
         sink.bytes(self.header(L::NAME).as_bytes())?;
-        for part in self.parts {
+        let parts = || self.parts.iter().zip(&self.shared);
+        for (part, _) in parts().filter(|(_, shared)| shared.is_none()) {
             self.vertices::<L>(part, sink)?;
         }
+        let count = |part: &Geometry| points_of(part).map_or(0, <[_]>::len) as u32;
         let mut first = 0;
-        for part in self.parts {
+        for (part, shared) in parts() {
             self.faces::<L>(part, first, sink)?;
-            first += points_of(part).map_or(0, <[_]>::len) as u32;
+            first += if shared.is_none() { count(part) } else { 0 };
         }
         let mut first = 0;
-        for part in self.parts {
-            self.edges::<L>(part, first, sink)?;
-            first += points_of(part).map_or(0, <[_]>::len) as u32;
+        for (part, shared) in parts() {
+            self.edges::<L>(part, first, shared.as_deref(), sink)?;
+            first += if shared.is_none() { count(part) } else { 0 };
         }
         for (table, _, properties) in &self.tables {
             let sources = properties.of(Some(&table.columns));
@@ -239,11 +250,18 @@ impl<'s> File<'s> {
         }
     }
 
-    fn edges<L: Laid>(&self, part: &Geometry, first: u32, sink: &mut Sink<'_>) -> Result<(), WriteError> {
+    fn edges<L: Laid>(
+        &self,
+        part: &Geometry,
+        first: u32,
+        shared: Option<&[u32]>,
+        sink: &mut Sink<'_>,
+    ) -> Result<(), WriteError> {
+        let number = |end: u32| shared.map_or(first + end, |shared| shared[end as usize]);
         let sources = self.edge.of(edge_columns_of(part));
         let mut put = |index: usize, ends: [u32; 2]| {
             sink.piece(|out| {
-                ends.into_iter().for_each(|end| L::put((first + end) as i32, out));
+                ends.into_iter().for_each(|end| L::put(number(end) as i32, out));
                 sources.put::<L>(index, out);
                 L::end_row(out);
             })
