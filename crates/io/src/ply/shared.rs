@@ -32,7 +32,7 @@ pub(super) fn shared_vertices(parts: &[Arc<Geometry>]) -> Vec<Option<Vec<u32>>> 
         let hosts = columns_of(&parts[host], Domain::Vertex);
         let pairs: Option<Vec<(&Column, &Column)>> =
             columns.iter().map(|column| Some((column, hosts?.get(column.name())?))).collect();
-        let Some(pairs) = pairs.filter(|_| columns.lists().len() == 0) else { continue };
+        let Some(pairs) = pairs.filter(|_| columns.lists().is_empty()) else { continue };
         let mut taken = HashSet::new();
         let own = graph.positions().iter().enumerate().map(|(vertex, point)| {
             let same = |&&other: &&u32| {
