@@ -87,6 +87,10 @@ fn read_document<'e>(
             shape.parts.push(Part { name: name.to_owned(), geometry, placement, material: *material });
         }
     }
+    let unseen = root.count("meshes")?.saturating_sub(meshes.shown.len());
+    if unseen > 0 {
+        primitives.losses.push(format!("{unseen} meshes"), "no node of the scene shows them");
+    }
     let mut losses = primitives.losses.into_vec();
     losses.extend(primitives.ignored.into_losses());
     Ok(ReadShape { shape, findings: primitives.findings, losses })

@@ -136,6 +136,11 @@ fn what_is_passed_over_in_reading_is_named_once_for_each_kind() {
     };
     assert!(said(|document| document["nodes"][0]["name"] = json!("n")).is_empty());
     assert!(said(|document| document["meshes"][0]["name"] = json!("m")).is_empty());
+    let unseen = said(|document| {
+        let mesh = document["meshes"][0].clone();
+        document["meshes"] = json!([mesh.clone(), mesh.clone(), mesh]);
+    });
+    assert_eq!(unseen, ["2 meshes"]);
     let mut all = said(|document| {
         document["nodes"] = json!([
             {"mesh": 0, "name": "a", "extensions": {"EXT_b": {}, "EXT_a": {}}, "extras": 1},
