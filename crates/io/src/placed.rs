@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Affine, Loss};
-use shapeloom_mesh::{Attributes, Domain};
+use shapeloom_mesh::{AttributeError, Attributes, Column, Domain};
 use shapeloom_shape::{Geometry, Part, Shape};
 
 use crate::{Format, Keeps, WriteError};
@@ -169,6 +169,21 @@ pub(crate) fn edge_columns_of(geometry: &Geometry) -> Option<&Attributes> {
     }
 }
 
+/// Adds a column to a geometry that has elements of that kind; to others nothing.
+///
+/// # Errors
+/// It has another number of elements, or its name is taken.
+pub(crate) fn insert_column(geometry: &mut Geometry, domain: Domain, column: Column) -> Result<(), AttributeError> {
+    match (geometry, domain) {
+        (Geometry::TriMesh(mesh), _) => mesh.insert_attribute(domain, column),
+        (Geometry::PolyMesh(mesh), _) => mesh.insert_attribute(domain, column),
+        (Geometry::PointCloud(cloud), Domain::Vertex) => cloud.insert_attribute(column),
+        (Geometry::Polyline(line), Domain::Vertex) => line.insert_attribute(column),
+        (Geometry::GeometricGraph(graph), Domain::Vertex) => graph.insert_vertex_attribute(column),
+        _ => Ok(()),
+    }
+}
+
 /// Losses gathered so that each is said once, however many parts have it.
 #[derive(Default)]
 pub(crate) struct Losses {
@@ -227,7 +242,7 @@ impl Losses {
 mod tests {
     use super::*;
     use crate::{FORMATS, WriteContext, write};
-    use shapeloom_mesh::{Column, GeometricGraph, ListColumn, TriMesh, Values};
+    use shapeloom_mesh::{GeometricGraph, ListColumn, TriMesh, Values};
     use shapeloom_shape::{Kind, Table};
 
     fn list(name: &str, elements: usize) -> ListColumn {

@@ -1,6 +1,24 @@
-//! Files that are not part of the repository.
+//! What tests of several formats use.
 
 use std::path::{Path, PathBuf};
+
+use shapeloom_core::Report;
+use shapeloom_shape::Shape;
+
+use crate::{Encoding, Format, WriteContext, WriteOptions};
+
+/// A shape as a file of a format in an encoding, and what the writer said of it.
+pub(crate) fn written_as(format: &Format, shape: &Shape, encoding: Encoding) -> (Vec<u8>, Report) {
+    let context = WriteContext { options: WriteOptions { encoding, ..WriteOptions::default() }, ..Default::default() };
+    let mut out = Vec::new();
+    let report = crate::write(shape, format, &context, &mut out).unwrap();
+    (out, report)
+}
+
+/// What a report names as lost.
+pub(crate) fn whats(report: &Report) -> Vec<&str> {
+    report.losses.iter().map(|loss| loss.what.as_str()).collect()
+}
 
 /// The path of a file of the shared collection beside the workspace; none where the collection is not there, and the
 /// test that asked has nothing to look at.

@@ -18,6 +18,7 @@ use super::sides::Sides;
 use super::statements::NONE;
 use crate::memory::Memory;
 use crate::parts::most_parts;
+use crate::placed::insert_column;
 use crate::{Fault, ReadContext, ReadError, ReadShape, audit};
 
 /// The column of a vertex's rational weight, which polygons do not use.
@@ -47,6 +48,9 @@ pub(super) fn assemble(
     let columns = VertexColumns::take(&mut whole, findings)?;
     if whole.deep_texcoords {
         losses.push(Loss::new("third texture coordinates", "shapes keep two"));
+    }
+    if whole.comments {
+        losses.push(Loss::new("comments", "those of OBJ stand between statements, for which shapes have no place"));
     }
     if whole.line_texcoords {
         losses.push(Loss::new("texture coordinates of lines", "lines keep what their vertices have"));
@@ -186,12 +190,5 @@ fn labelled(
         runs.iter().for_each(|run| numbers.resize(numbers.len() + run.elements.len(), run.labels.smoothing));
         columns.push(Column::labels(SMOOTHING, numbers));
     }
-    for column in columns {
-        match geometry {
-            Geometry::TriMesh(mesh) => mesh.insert_attribute(Domain::Face, column).map_err(unfit)?,
-            Geometry::PolyMesh(mesh) => mesh.insert_attribute(Domain::Face, column).map_err(unfit)?,
-            _ => {}
-        }
-    }
-    Ok(())
+    columns.into_iter().try_for_each(|column| insert_column(geometry, Domain::Face, column)).map_err(unfit)
 }

@@ -9,6 +9,7 @@ use super::read::Whole;
 use super::statements::{NONE, Side};
 use crate::ReadError;
 use crate::color::linear;
+use crate::placed::insert_column;
 
 /// Colours and weights as columns of all vertices.
 pub(super) struct VertexColumns {
@@ -117,11 +118,7 @@ pub(super) fn whole_mesh(
     let positions = std::mem::take(&mut whole.positions);
     let mut mesh = std::mem::take(&mut whole.faces).into_geometry(positions).map_err(no_mesh)?;
     for (domain, column) in found {
-        match &mut mesh {
-            Geometry::TriMesh(mesh) => mesh.insert_attribute(domain, column).map_err(unfit)?,
-            Geometry::PolyMesh(mesh) => mesh.insert_attribute(domain, column).map_err(unfit)?,
-            _ => {}
-        }
+        insert_column(&mut mesh, domain, column).map_err(unfit)?;
     }
     Ok(mesh)
 }

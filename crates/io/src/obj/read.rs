@@ -82,6 +82,7 @@ pub(super) struct Whole<'t> {
     pub line_texcoords: bool,
     pub points: Vec<u32>,
     pub events: Vec<Event>,
+    pub comments: bool,
     /// Where the faces of each piece are in the text, and how many there are.
     places: Vec<(Range<usize>, usize)>,
 }
@@ -139,7 +140,7 @@ fn put_together<'t, 'e>(
     let (mut lines, mut line_ends, mut points) = (Growing::default(), Growing::default(), Growing::default());
     let mut events = Growing::default();
     let mut places = Vec::with_capacity(pieces.len());
-    let (mut deep_texcoords, mut line_texcoords) = (false, false);
+    let (mut deep_texcoords, mut line_texcoords, mut comments) = (false, false, false);
     let mut held = Vec::with_capacity(pieces.len());
     for mut piece in pieces {
         context.exec.check()?;
@@ -171,6 +172,7 @@ fn put_together<'t, 'e>(
         normals.append(memory, piece.normals)?;
         deep_texcoords |= piece.deep_texcoords;
         line_texcoords |= piece.line_texcoords;
+        comments |= piece.comments;
         findings.extend(std::mem::take(&mut piece.findings));
         // What the pieces have reserved, the whole holds.
         held.push(piece.memory);
@@ -205,6 +207,7 @@ fn put_together<'t, 'e>(
         line_texcoords,
         points: points.into_vec(),
         events: events.into_vec(),
+        comments,
         places,
     };
     whole.check_indices()?;

@@ -300,6 +300,15 @@ fn names_in_other_encodings_are_kept_apart_and_told() {
 }
 
 #[test]
+fn comments_are_named_as_lost() {
+    for (text, count) in
+        [("# a\nv 0 0 0\n", 1), ("v 0 0 0 # a\n", 1), ("v 0 0 0\n\n  # a", 1), ("o a # b\nv 0 0 0\n", 0)]
+    {
+        assert_eq!(obj(text).losses.len(), count, "{text}");
+    }
+}
+
+#[test]
 fn limits_and_budgets_hold() {
     let polygon = Limits { max_polygon: 4, ..Limits::default() };
     let context = ReadContext { limits: polygon, ..ReadContext::default() };

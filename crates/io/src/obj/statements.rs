@@ -40,6 +40,7 @@ pub(super) struct Piece<'e> {
     /// The vertices of all `p` statements.
     pub points: Indices,
     pub events: Growing<Event>,
+    pub comments: bool,
 }
 
 /// Values that only some vertices have: kept for all from the first that has one on.
@@ -135,11 +136,20 @@ impl<'e> Piece<'e> {
             line_texcoords: false,
             points: Indices::default(),
             events: Growing::default(),
+            comments: false,
         };
         let mut scan = Scanner::new(&text[..range.end], range.start);
         let mut corners = Vec::new();
         let mut statements = 0usize;
-        while scan.skip_empty_lines() {
+        loop {
+            let before = scan.offset();
+            let more = scan.skip_empty_lines();
+            // What was passed over is blank but for comments.
+            piece.comments = piece.comments
+                || before < scan.offset() && memchr::memchr(b'#', &text[before..scan.offset()]).is_some();
+            if !more {
+                break;
+            }
             statements += 1;
             if statements.is_multiple_of(1 << 14) {
                 context.exec.check()?;
@@ -160,6 +170,7 @@ impl<'e> Piece<'e> {
                 b"mtllib" => piece.event(EventKind::Library, &scan)?,
                 word => piece.other(word, word_at)?,
             }
+            piece.comments |= scan.peek() == Some(b'#');
             scan.next_line();
         }
         Ok(piece)

@@ -25,7 +25,6 @@ pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) 
         state: State::default(),
         materials: material_names(&shape.materials, &mut losses),
     };
-    writer.sink.bytes(b"# written by shapeloom\n")?;
     let library = library(shape, &writer.materials, context, &mut losses);
     if let Some((name, _)) = &library {
         writer.sink.text(format_args!("mtllib {}\n", name.as_str()))?;

@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_mesh::{Column, Domain, NORMAL, TEXCOORD, TriMesh};
-use shapeloom_shape::{Geometry, Part, Shape};
+use shapeloom_shape::{Part, Shape};
 
 use super::color::{FaceColors, Seen, WHITE, column};
 use super::counts::Counts;
@@ -12,6 +12,7 @@ use super::{COLORMAP, NO_INDEX};
 use crate::audit::degenerate_faces;
 use crate::faces::Faces;
 use crate::memory::{Growing, Memory};
+use crate::placed::insert_column;
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 /// The numbers of a vertex, in their order in the file.
@@ -174,13 +175,7 @@ impl Body {
             false => self.faces.into_geometry(positions).map_err(|error| inconsistent(error.to_string()))?,
         };
         for (domain, column) in columns {
-            let inserted = match (&mut geometry, domain) {
-                (Geometry::TriMesh(mesh), _) => mesh.insert_attribute(domain, column),
-                (Geometry::PolyMesh(mesh), _) => mesh.insert_attribute(domain, column),
-                (Geometry::PointCloud(cloud), Domain::Vertex) => cloud.insert_attribute(column),
-                _ => Ok(()),
-            };
-            inserted.map_err(|error| inconsistent(error.to_string()))?;
+            insert_column(&mut geometry, domain, column).map_err(|error| inconsistent(error.to_string()))?;
         }
         let skipped = self.skipped.into_vec();
         let place = |face: usize| place(face + skipped.partition_point(|&before| before as usize <= face));

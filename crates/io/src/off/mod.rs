@@ -15,6 +15,7 @@ mod tests;
 mod text;
 mod write;
 
+use shapeloom_core::Loss;
 use shapeloom_shape::Kind;
 
 use crate::{Format, Keeps, Precision, ReadContext, ReadError, ReadShape, Sniff};
@@ -47,6 +48,13 @@ fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
     let unmarked = input.strip_prefix(b"\xef\xbb\xbf").unwrap_or(input);
     match header::binary_body(unmarked) {
         Some((header, body)) => binary::read(unmarked, &header, body, context),
-        None => text::read(input, context),
+        None => {
+            let mut read = text::read(input, context)?;
+            if memchr::memchr(b'#', input).is_some() {
+                read.losses
+                    .push(Loss::new("comments", "those of OFF stand between rows, for which shapes have no place"));
+            }
+            Ok(read)
+        }
     }
 }

@@ -1,12 +1,13 @@
 //! Texts and bytes made by hand, and texts cut anywhere.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Affine, Deviation, Place, Report};
+use shapeloom_core::{Affine, Deviation, Place};
 use shapeloom_mesh::{COLOR, Column, Domain, NORMAL, PointCloud, PolyMesh, TEXCOORD, Values};
 use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use super::FORMAT;
 use crate::placed::{columns_of, points_of};
+use crate::test_data::{whats, written_as};
 use crate::{Encoding, ReadContext, ReadShape, WriteContext, WriteOptions, read};
 
 fn read_text(text: &str) -> ReadShape {
@@ -292,17 +293,6 @@ fn binary_files_are_big_endian() {
     }
 }
 
-fn written(shape: &Shape, encoding: Encoding) -> (Vec<u8>, Report) {
-    let context = WriteContext { options: WriteOptions { encoding, ..WriteOptions::default() }, ..Default::default() };
-    let mut out = Vec::new();
-    let report = crate::write(shape, &FORMAT, &context, &mut out).unwrap();
-    (out, report)
-}
-
-fn whats(report: &Report) -> Vec<&str> {
-    report.losses.iter().map(|loss| loss.what.as_str()).collect()
-}
-
 /// Two triangles and a square with every column that OFF takes, and some that it does not.
 fn painted(vertex_color: Values, face_color: Option<Values>) -> PolyMesh {
     let positions = (0..5).map(|i| DVec3::new(f64::from(i) / 3.0, f64::from(i * i) * 1e-9, -0.0)).collect();
@@ -335,16 +325,17 @@ fn every_column_survives_in_the_same_bits() {
         ("STCNOFF", Values::U8([0, 1, 1, 255].repeat(5)), None),
     ] {
         let mesh = painted(vertex, face);
-        let (file, report) = written(&Shape::new(Part::new(mesh.clone())), Encoding::Automatic);
+        let (file, report) = written_as(&FORMAT, &Shape::new(Part::new(mesh.clone())), Encoding::Automatic);
         assert!(file.starts_with(format!("{header}\n5 3 0\n").as_bytes()));
         assert_eq!((report.deviation, whats(&report)), (Deviation::Exact, vec![]));
         let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
         assert_eq!(*geometry(&again), mesh.into());
-        let (twice, _) = written(&again.shape, Encoding::Automatic);
+        let (twice, _) = written_as(&FORMAT, &again.shape, Encoding::Automatic);
         assert_eq!(twice, file);
     }
     // Bytes that could be fractions get an alpha that says what they are.
-    let (file, _) = written(&Shape::new(Part::new(painted(Values::U8(vec![1; 15]), None))), Encoding::Ascii);
+    let (file, _) =
+        written_as(&FORMAT, &Shape::new(Part::new(painted(Values::U8(vec![1; 15]), None))), Encoding::Ascii);
     let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
     assert_eq!(column(&again, Domain::Vertex, COLOR).values(), &Values::U8([1, 1, 1, 255].repeat(5)));
 }
@@ -352,7 +343,7 @@ fn every_column_survives_in_the_same_bits() {
 #[test]
 fn binary_numbers_are_rounded_and_said_so() {
     let mesh = painted(Values::F64(vec![0.5; 20]), Some(Values::U8(vec![255, 0, 128, 9, 9, 9, 0, 0, 0])));
-    let (file, report) = written(&Shape::new(Part::new(mesh.clone())), Encoding::Binary);
+    let (file, report) = written_as(&FORMAT, &Shape::new(Part::new(mesh.clone())), Encoding::Binary);
     assert!(file.starts_with(b"STCNOFF BINARY\n"));
     let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
     let Deviation::AtMost(bound) = report.deviation else { panic!("{:?}", report.deviation) };
@@ -365,7 +356,7 @@ fn binary_numbers_are_rounded_and_said_so() {
     // Half of sRGB is about a fifth of the light.
     let colors = column(&again, Domain::Face, COLOR);
     assert!((colors.number(0, 2) - 0.2158605).abs() < 1e-6 && colors.number(0, 0) == 1.0);
-    let (twice, report) = written(&again.shape, Encoding::BinaryBigEndian);
+    let (twice, report) = written_as(&FORMAT, &again.shape, Encoding::BinaryBigEndian);
     assert_eq!((twice, report.deviation), (file, Deviation::Exact));
     let far = Shape::new(Part::new(PointCloud::new(vec![DVec3::ZERO, DVec3::X * 1e39])));
     let context = WriteContext {
@@ -385,7 +376,7 @@ fn parts_are_put_together_and_what_differs_is_lost() {
     let placement = Affine::from_translation(DVec3::X);
     let parts =
         vec![Part { placement, ..Part::new(square.clone()).named("square") }, Part::new(cloud), Part::new(square)];
-    let (file, report) = written(&Shape { parts, ..Shape::default() }, Encoding::Automatic);
+    let (file, report) = written_as(&FORMAT, &Shape { parts, ..Shape::default() }, Encoding::Automatic);
     let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
     let Geometry::PolyMesh(mesh) = geometry(&again) else { panic!("polygons") };
     assert_eq!((mesh.positions().len(), mesh.face_count()), (12, 6));
@@ -408,7 +399,7 @@ fn parts_are_put_together_and_what_differs_is_lost() {
 fn clouds_and_nothing_survive() {
     let cloud = Shape::new(Part::new(PointCloud::new(vec![DVec3::ONE, DVec3::X * 1e300])));
     for (shape, counts) in [(cloud, "OFF\n2 0 0\n"), (Shape::default(), "OFF\n0 0 0\n")] {
-        let (file, _) = written(&shape, Encoding::Automatic);
+        let (file, _) = written_as(&FORMAT, &shape, Encoding::Automatic);
         assert!(file.starts_with(counts.as_bytes()));
         let again = crate::read(&file, &FORMAT, &ReadContext::default()).unwrap();
         match shape.parts.first() {
@@ -416,4 +407,10 @@ fn clouds_and_nothing_survive() {
             None => assert_eq!((codes(&again), geometry(&again).kind()), (vec!["W-off-empty"], Kind::TriMesh)),
         }
     }
+}
+
+#[test]
+fn comments_are_named_as_lost() {
+    let losses = |text: &str| read_text(text).losses.len();
+    assert_eq!((losses("OFF 1 0 0\n0 0 0 # here\n"), losses("OFF 1 0 0\n0 0 0\n")), (1, 0));
 }

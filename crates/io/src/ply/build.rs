@@ -15,6 +15,7 @@ use super::{color, strips};
 use crate::audit::degenerate_faces;
 use crate::faces::Faces;
 use crate::memory::Memory;
+use crate::placed::insert_column;
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 /// What a shape is built from, and what was noticed on the way.
@@ -369,11 +370,7 @@ fn mesh_of(
     wedge: Option<Column>,
 ) -> Result<Geometry, ReadError> {
     let mut geometry = faces.into_geometry(points).map_err(wrong)?;
-    let mut insert = |domain: Domain, column: Column| match &mut geometry {
-        Geometry::TriMesh(mesh) => mesh.insert_attribute(domain, column),
-        Geometry::PolyMesh(mesh) => mesh.insert_attribute(domain, column),
-        _ => Ok(()),
-    };
+    let mut insert = |domain: Domain, column: Column| insert_column(&mut geometry, domain, column);
     for (domain, columns) in [(Domain::Vertex, vertex.columns), (Domain::Face, face.columns)] {
         columns.into_iter().try_for_each(|column| insert(domain, column)).map_err(wrong)?;
     }

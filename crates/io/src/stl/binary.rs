@@ -1,14 +1,16 @@
 //! Binary STL.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Category, Findings, Place, Severity};
+use shapeloom_core::{Category, Findings, Loss, Place, Severity};
 use shapeloom_mesh::{Domain, TriMesh};
 use shapeloom_shape::{Part, Shape};
 
 use super::weld::Welder;
+use super::write::WORDS;
 use super::{COUNT, FACET, HEADER, color};
 use crate::audit::degenerate_faces;
 use crate::memory::{Growing, Memory};
+use crate::text::quoted;
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 /// How many facets are read at once, between polls.
@@ -66,17 +68,27 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
         (TriMesh::try_new(positions.into_vec(), triangles), seen)
     };
     let mut mesh = mesh.map_err(|error| too_many(error.to_string()))?;
+    let mut losses = Vec::new();
+    let header =
+        input.get(..COUNT).unwrap_or_default().split(|&byte| byte == 0).next().unwrap_or_default().trim_ascii();
+    let own = header.is_empty() || header.starts_with(WORDS) || color::in_header(input);
+    if !own {
+        losses.push(Loss::new(format!("the header {}", quoted(header)), "shapes have no place for it"));
+    }
     if (seen.words & color::OWN != 0 || color::in_header(input))
         && let Some(column) = color::column(&input[..HEADER + facets.len()], memory, &mut findings)?
     {
         mesh.insert_attribute(Domain::Face, column).map_err(|error| too_many(error.to_string()))?;
+    } else if seen.words != 0 {
+        losses
+            .push(Loss::new("attribute words of facets", "they are no colours, and shapes have no other use for them"));
     }
     let geometry = mesh.into();
     if seen.flat {
         let place = |facet: usize| Place::Byte((HEADER + facet * FACET) as u64);
         degenerate_faces(&geometry, "W-stl-degenerate", exec, &mut findings, place)?;
     }
-    Ok(ReadShape { findings, ..ReadShape::new(Shape::new(Part::new(geometry))) })
+    Ok(ReadShape { findings, losses, ..ReadShape::new(Shape::new(Part::new(geometry))) })
 }
 
 /// The bytes of the facets, as many as the header says.

@@ -1,13 +1,13 @@
 //! Files made by hand, and text cut anywhere.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Affine, Category, Deviation, Diagnostic, Exec, Place, Report, Threads};
+use shapeloom_core::{Affine, Category, Deviation, Diagnostic, Exec, Place, Threads};
 use shapeloom_mesh::{COLOR, Column, Domain, TriMesh, Values};
 use shapeloom_shape::{Geometry, Part, Shape, UpAxis};
 
 use super::FORMAT;
-use crate::test_data::shuffled_lines;
-use crate::{Encoding, ReadContext, ReadShape, Sniff, WriteContext, WriteOptions, read};
+use crate::test_data::{shuffled_lines, whats, written_as};
+use crate::{Encoding, ReadContext, ReadShape, Sniff, WriteContext, read};
 
 /// Facets with their last two bytes, and a header that begins so.
 fn binary(header: &[u8], facets: &[([[f32; 3]; 3], u16)]) -> Vec<u8> {
@@ -185,17 +185,6 @@ fn text_is_told_from_binary() {
     assert_eq!((FORMAT.sniff)(&[0; 84]), Sniff::Likely);
 }
 
-fn written(shape: &Shape, encoding: Encoding) -> (Vec<u8>, Report) {
-    let context = WriteContext { options: WriteOptions { encoding, ..WriteOptions::default() }, ..Default::default() };
-    let mut out = Vec::new();
-    let report = crate::write(shape, &FORMAT, &context, &mut out).unwrap();
-    (out, report)
-}
-
-fn whats(report: &Report) -> Vec<&str> {
-    report.losses.iter().map(|loss| loss.what.as_str()).collect()
-}
-
 fn tetrahedron(scale: f64) -> TriMesh {
     let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|point| point * scale).to_vec();
     TriMesh::try_new(positions, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]).unwrap()
@@ -209,7 +198,7 @@ fn text_keeps_names_parts_and_bits() {
         Part::new(tetrahedron(1e300)),
     ];
     let shape = Shape { parts, ..Shape::default() };
-    let (file, report) = written(&shape, Encoding::Ascii);
+    let (file, report) = written_as(&FORMAT, &shape, Encoding::Ascii);
     assert_eq!((report.deviation, whats(&report)), (Deviation::Exact, vec![]));
     let text = String::from_utf8(file.clone()).unwrap();
     let start = "solid one third of it\nfacet normal 0 0 -1\n outer loop\n  vertex 0 0 0\n  vertex 0 ";
@@ -226,16 +215,16 @@ fn text_keeps_names_parts_and_bits() {
         assert_eq!(corners(mesh(&again, part)), corners(wanted));
         assert_eq!(mesh(&again, part).positions().len(), wanted.positions().len());
     }
-    assert_eq!(written(&again.shape, Encoding::Ascii).0, file);
+    assert_eq!(written_as(&FORMAT, &again.shape, Encoding::Ascii).0, file);
     let named = Shape::new(Part::new(tetrahedron(1.0)).named(" two\nlines"));
-    let (file, report) = written(&named, Encoding::Ascii);
+    let (file, report) = written_as(&FORMAT, &named, Encoding::Ascii);
     assert_eq!(read_as(&file, &ReadContext::default()).shape.parts[0].name, "two_lines");
     assert_eq!(whats(&report), ["part name \" two\\nlines\""]);
 }
 
 #[test]
 fn binary_facets_have_their_normal_and_rounding_is_said() {
-    let (file, report) = written(&Shape::new(Part::new(tetrahedron(0.1)).named("x")), Encoding::Automatic);
+    let (file, report) = written_as(&FORMAT, &Shape::new(Part::new(tetrahedron(0.1)).named("x")), Encoding::Automatic);
     assert_eq!(file.len(), 84 + 4 * 50);
     assert_eq!((&file[80..84], file.starts_with(b"solid")), (&[4, 0, 0, 0][..], false));
     let number = |at: usize| f32::from_le_bytes(file[at..at + 4].try_into().unwrap());
@@ -252,11 +241,11 @@ fn binary_facets_have_their_normal_and_rounding_is_said() {
     assert!(matches!(error, crate::WriteError::NotFinite { index: 1, .. }), "{error}");
     // Tiny and degenerate facets have normals too, or none.
     let mut flat = TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0], vec![[0, 1, 2]]).unwrap();
-    let (file, report) = written(&Shape::new(Part::new(flat.clone())), Encoding::Binary);
+    let (file, report) = written_as(&FORMAT, &Shape::new(Part::new(flat.clone())), Encoding::Binary);
     assert_eq!((&file[84..96], report.deviation), (&[0; 12][..], Deviation::Exact));
     flat.positions_mut()[2] = DVec3::Y;
     let tiny = flat.transformed(&Affine::from_scale(DVec3::splat(1e-200)));
-    let (file, _) = written(&Shape::new(Part::new(tiny)), Encoding::Ascii);
+    let (file, _) = written_as(&FORMAT, &Shape::new(Part::new(tiny)), Encoding::Ascii);
     assert!(file.starts_with(b"solid \nfacet normal 0 0 1\n"));
 }
 
@@ -266,12 +255,12 @@ fn colors_survive_in_five_bits_and_all_else_is_lost_by_name() {
     let colors = vec![255, 0, 8, 132, 16, 25, 33, 41, 49, 58, 66, 74];
     mesh.insert_attribute(Domain::Face, Column::try_new(COLOR, 3, Values::U8(colors.clone())).unwrap()).unwrap();
     let shape = Shape::new(Part::new(mesh.clone()));
-    let (file, report) = written(&shape, Encoding::Binary);
+    let (file, report) = written_as(&FORMAT, &shape, Encoding::Binary);
     assert!(whats(&report).is_empty());
     let again = read_as(&file, &ReadContext::default());
     let found = self::mesh(&again, 0).attribute(Domain::Face, COLOR).unwrap();
     assert_eq!(found.values(), &Values::U8(colors));
-    assert_eq!(written(&again.shape, Encoding::Binary).0, file);
+    assert_eq!(written_as(&FORMAT, &again.shape, Encoding::Binary).0, file);
 
     mesh.remove_attribute(Domain::Face, COLOR);
     mesh.insert_attribute(Domain::Face, Column::try_new(COLOR, 4, Values::U8(vec![100; 16])).unwrap()).unwrap();
@@ -280,7 +269,7 @@ fn colors_survive_in_five_bits_and_all_else_is_lost_by_name() {
     let lone = TriMesh::try_new(vec![DVec3::ZERO; 4], vec![[0, 1, 2]]).unwrap();
     let parts = vec![Part::new(mesh), Part::new(lone)];
     let shape = Shape { parts, up: Some(UpAxis::Z), ..Shape::default() };
-    let (file, report) = written(&shape, Encoding::BinaryBigEndian);
+    let (file, report) = written_as(&FORMAT, &shape, Encoding::BinaryBigEndian);
     let wanted = [
         "2 separate parts",
         "up axis (z)",
@@ -298,6 +287,24 @@ fn colors_survive_in_five_bits_and_all_else_is_lost_by_name() {
     assert_eq!(again.shape.parts.len(), 1);
     let color = self::mesh(&again, 0).attribute(Domain::Face, COLOR).unwrap();
     assert_eq!((color.number(0, 0), color.number(4, 0)), (99.0, 255.0));
-    let (_, report) = written(&shape, Encoding::Ascii);
+    let (_, report) = written_as(&FORMAT, &shape, Encoding::Ascii);
     assert!(whats(&report).contains(&"face attribute \"color\"") && !whats(&report).contains(&"2 separate parts"));
+}
+
+/// What people and programs put beside the facets is named where it is not kept.
+#[test]
+fn headers_and_words_that_are_no_colors_are_named() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let said = |header: &[u8], word: u16| -> Vec<String> {
+        let file = binary(header, &[(corners, word)]);
+        let read = read(&file, &FORMAT, &ReadContext::default()).unwrap();
+        read.losses.into_iter().map(|loss| loss.what).collect()
+    };
+    assert_eq!(said(b"Exported by a CAD, unit mm  ", 0), ["the header \"Exported by a CAD, unit mm\""]);
+    assert_eq!(said(b"", 7), ["attribute words of facets"]);
+    assert!(said(b"   ", 0).is_empty() && said(b"", 1 << 15).is_empty());
+    // What the writer puts there itself is nothing to lose.
+    let read = read(&binary(b"", &[(corners, 0)]), &FORMAT, &ReadContext::default()).unwrap();
+    let (file, _) = written_as(&FORMAT, &read.shape, Encoding::Binary);
+    assert!(crate::read(&file, &FORMAT, &ReadContext::default()).unwrap().losses.is_empty());
 }

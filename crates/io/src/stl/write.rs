@@ -21,6 +21,9 @@ const BINARY: Format = Format { keeps: &[Keeps::Colors], ..FORMAT };
 /// What a text keeps.
 const TEXT: Format = Format { keeps: &[Keeps::Names, Keeps::Parts], ..FORMAT };
 
+/// What the header of a binary file begins with.
+pub(super) const WORDS: &[u8] = b"binary STL written by shapeloom";
+
 pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) -> Result<Report, WriteError> {
     let _memory = context.exec.reserve(shape.parts.iter().map(|part| part.geometry.memory_bytes() as u64).sum())?;
     let placed: Result<Vec<Arc<Geometry>>, WriteError> =
@@ -98,7 +101,6 @@ fn write_binary(
         return Err(WriteError::TooLarge { format: FORMAT.id, what: "facets", found, max });
     };
     // A header that begins with the word solid would be taken for text.
-    const WORDS: &[u8] = b"binary STL written by shapeloom";
     let mut header = [b' '; COUNT];
     header[..WORDS.len()].copy_from_slice(WORDS);
     let colored = parts.iter().any(|part| byte_colors(part).is_some());
