@@ -31,6 +31,8 @@ pub(crate) fn findings(findings: &Findings) -> Value {
         Place::Line { line, column } => json!({ "line": line, "column": column }),
         Place::Byte(offset) => json!({ "byte": offset }),
         Place::Element { kind, index } => json!({ "kind": kind, "index": index }),
+        Place::Pair { kind, indices } => json!({ "kind": kind, "indices": indices }),
+        Place::Edge { vertices } => json!({ "kind": "edge", "vertices": vertices }),
     };
     let one = |finding: &shapeloom_core::Finding| {
         json!({

@@ -27,6 +27,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
     (
+        "E-judge-finite",
+        "A vertex of a mesh is at a position that is infinite or not a number, so nothing about its geometry can be decided. Repair the file, or leave such vertices out with --drop-non-finite.",
+    ),
+    (
+        "E-judge-underflow",
+        "A coordinate is so small beside the largest of the shape (below about 1e-86 of it) that exact arithmetic on it would lose bits. Nothing is guessed: set coordinates that small to 0.",
+    ),
+    (
         "E-memory-budget",
         "The work needs more memory than --max-memory allows; ask for a coarser result, or allow more.",
     ),

@@ -23,6 +23,18 @@ pub enum Place {
         /// Its index, counted from 0.
         index: u64,
     },
+    /// Two elements of one kind, counted from 0: `faces 3 and 9`.
+    Pair {
+        /// What kind of elements, in the plural.
+        kind: &'static str,
+        /// Their indices.
+        indices: [u64; 2],
+    },
+    /// The edge between two vertices, counted from 0.
+    Edge {
+        /// The indices of the vertices.
+        vertices: [u64; 2],
+    },
 }
 
 impl Place {
@@ -35,6 +47,16 @@ impl Place {
     pub fn element(kind: &'static str, index: u64) -> Self {
         Self::Element { kind, index }
     }
+
+    /// Two elements of one kind, which is named in the plural.
+    pub fn pair(kind: &'static str, a: u32, b: u32) -> Self {
+        Self::Pair { kind, indices: [a, b].map(u64::from) }
+    }
+
+    /// The edge between two vertices.
+    pub fn edge(a: u32, b: u32) -> Self {
+        Self::Edge { vertices: [a, b].map(u64::from) }
+    }
 }
 
 impl fmt::Display for Place {
@@ -45,6 +67,8 @@ impl fmt::Display for Place {
             Self::Line { line, column: Some(column) } => write!(f, "line {line}, column {column}"),
             Self::Byte(offset) => write!(f, "byte {offset}"),
             Self::Element { kind, index } => write!(f, "{kind} {index}"),
+            Self::Pair { kind, indices: [a, b] } => write!(f, "{kind} {a} and {b}"),
+            Self::Edge { vertices: [a, b] } => write!(f, "edge {a}-{b}"),
         }
     }
 }

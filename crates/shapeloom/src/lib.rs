@@ -51,6 +51,7 @@
 //! | [`core`] | boxes, affine maps, cameras; conversions, reports, options, execution, errors; the capability traits |
 //! | [`spatial`] | a bounding volume hierarchy with watertight rays and closest points |
 //! | [`mesh`] | triangle and polygon meshes, polylines, height fields, point clouds, attributes, primitives |
+//! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
 //! | [`shape`] | the dynamic shape of parts |
 //! | [`io`] | file formats |
@@ -60,6 +61,7 @@
 pub use shapeloom_convert as convert;
 pub use shapeloom_core as core;
 pub use shapeloom_io as io;
+pub use shapeloom_judge as judge;
 pub use shapeloom_mesh as mesh;
 pub use shapeloom_parametric as parametric;
 pub use shapeloom_render as render;
