@@ -4,7 +4,16 @@
 //! arithmetic. Every answer that says "no" comes with a witness: the elements that show it.
 
 mod error;
+mod faces;
+mod measures;
+mod mesh_ref;
 mod scaled;
+mod topology;
+mod union_find;
 
 pub use error::JudgeError;
+pub use faces::Faces;
+pub use measures::Measures;
+pub use mesh_ref::MeshRef;
 pub use scaled::Scaled;
+pub use topology::{BoundaryLoops, Component, Topology};

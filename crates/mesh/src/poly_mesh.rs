@@ -108,6 +108,11 @@ impl PolyMesh {
         &self.corners
     }
 
+    /// Where each face's wedges start, and at last where they end: one more than there are faces.
+    pub fn face_starts(&self) -> &[u32] {
+        &self.starts
+    }
+
     /// The wedges of a face.
     ///
     /// # Panics

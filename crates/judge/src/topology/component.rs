@@ -1,0 +1,99 @@
+//! The parts of a mesh.
+
+use super::boundary::BoundaryLoops;
+use super::edges::Edges;
+use crate::Faces;
+use crate::union_find::DisjointSets;
+
+/// Faces that are joined through edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Component {
+    /// The smallest face.
+    pub first_face: u32,
+    /// How many faces it has.
+    pub faces: u32,
+    /// Its boundary loops.
+    pub boundary_loops: u32,
+    /// Whether its faces can be oriented alike.
+    pub orientable: bool,
+    /// Vertices less edges plus faces.
+    pub euler_characteristic: i64,
+    /// The number of its handles, or where it is not orientable of its crosscaps. None where the mesh is not manifold, or
+    /// where a face meets itself so that the number would not be whole.
+    pub genus: Option<u64>,
+}
+
+/// The components by their smallest face. Genus is told where the mesh is manifold.
+pub(super) fn components(
+    faces: &Faces<'_>,
+    edges: &Edges,
+    boundary: &BoundaryLoops,
+    twisted: &[u32],
+    manifold: bool,
+) -> Vec<Component> {
+    let mut joined = DisjointSets::new(faces.len());
+    for uses in edges.iter() {
+        let first = faces.face_of(uses[0]);
+        uses[1..].iter().for_each(|&wedge| joined.join(first, faces.face_of(wedge)));
+    }
+    // The number of each face's component; representatives are smallest, so they come before the rest.
+    let mut number = vec![0u32; faces.len()];
+    let mut found: Vec<Component> = Vec::new();
+    for face in 0..faces.len() as u32 {
+        let first = joined.find(face);
+        if first == face {
+            number[face as usize] = found.len() as u32;
+            found.push(Component {
+                first_face: face,
+                faces: 0,
+                boundary_loops: 0,
+                orientable: true,
+                euler_characteristic: 0,
+                genus: None,
+            });
+        }
+        number[face as usize] = number[first as usize];
+        let component = &mut found[number[face as usize] as usize];
+        component.faces += 1;
+        component.euler_characteristic += 1;
+    }
+    for &face in twisted {
+        found[number[face as usize] as usize].orientable = false;
+    }
+    for uses in edges.iter() {
+        found[number[faces.face_of(uses[0]) as usize] as usize].euler_characteristic -= 1;
+    }
+    // A vertex counts once for each component that names it.
+    let mut last = vec![u32::MAX; faces.vertex_count()];
+    let mut counted_twice = Vec::new();
+    for face in 0..faces.len() as u32 {
+        let component = number[face as usize];
+        for &vertex in faces.face(face) {
+            let seen = &mut last[vertex as usize];
+            if *seen == u32::MAX {
+                *seen = component;
+                found[component as usize].euler_characteristic += 1;
+            } else if *seen != component {
+                counted_twice.push((vertex, component));
+            }
+        }
+    }
+    counted_twice.sort_unstable();
+    counted_twice.dedup();
+    for (_, component) in counted_twice {
+        found[component as usize].euler_characteristic += 1;
+    }
+    // A loop's vertices belong to the component of any face there.
+    for edges in boundary.iter() {
+        found[last[edges[0][0] as usize] as usize].boundary_loops += 1;
+    }
+    if manifold {
+        for component in &mut found {
+            // χ = 2 − 2G − B, or 2 − K − B with crosscaps.
+            let twice = 2 - component.euler_characteristic - i64::from(component.boundary_loops);
+            let whole = if component.orientable { (twice % 2 == 0).then_some(twice / 2) } else { Some(twice) };
+            component.genus = whole.and_then(|genus| u64::try_from(genus).ok());
+        }
+    }
+    found
+}
