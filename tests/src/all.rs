@@ -34,4 +34,5 @@ mod round_trips;
 mod same_bits;
 mod shapes;
 mod support;
+mod topology;
 mod verification;

@@ -107,6 +107,8 @@ pub struct Facts {
     pub faces: usize,
     pub area: Option<f64>,
     pub volume: Option<f64>,
+    /// All that was measured, in words.
+    pub words: String,
 }
 
 /// The measured facts of all mesh files with one of these beginnings of their path.
@@ -133,6 +135,7 @@ pub fn facts(beginnings: &[&str]) -> Vec<Facts> {
             faces: faces as usize,
             area: value("area"),
             volume: value("vol"),
+            words: facts.to_owned(),
         });
     }
     found

@@ -63,8 +63,22 @@ fn info_keeps_its_contract() {
     // 96 x 48 quadrilaterals; a torus has V - E + F = 0 while its vertices are shared.
     assert_eq!(info["triangles"], 9216);
     assert_eq!(info["bounds"]["min"].as_array().map(Vec::len), Some(3));
-    for later in ["manifold", "closed", "genus", "components"] {
-        assert!(info.get(later).is_none(), "{later} is a guess before anything judges it");
+    for (key, known) in [
+        ("components", 1),
+        ("boundary_loops", 0),
+        ("boundary_edges", 0),
+        ("non_manifold_edges", 0),
+        ("non_manifold_vertices", 0),
+        ("euler_characteristic", 0),
+        ("genus", 1),
+        ("degenerate_faces", 0),
+        ("duplicate_faces", 0),
+        ("isolated_vertices", 0),
+    ] {
+        assert_eq!(info[key], known, "{key}");
+    }
+    for flag in ["manifold", "closed", "orientable", "oriented"] {
+        assert_eq!(info[flag], true, "{flag}");
     }
     let patches = run(&["info", &data("teapot.bpt"), "--json"]).json();
     assert_eq!((&patches["patches"], &patches["control_points"]), (&32.into(), &512.into()));

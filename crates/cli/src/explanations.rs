@@ -94,6 +94,18 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-shape", "There is no ready shape of that name."),
     ("E-usage-threads", "That many threads could not be started."),
     (
+        "W-info-open",
+        "The surface has a border, or faces that share an edge do not turn alike, so it encloses no volume: the number given is the signed volume of the cones from the faces to the centre of the bounding box, and changes with that centre.",
+    ),
+    (
+        "W-info-parts",
+        "The file has more than a thousand parts. Each is listed with its counts alone; the whole report is that of all parts together.",
+    ),
+    (
+        "W-info-size",
+        "The area or volume of a mesh is too large for the numbers, or so small that it would vanish. Scale the shape, by a power of two if no bit shall change.",
+    ),
+    (
         "W-patch-degenerate",
         "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",
     ),

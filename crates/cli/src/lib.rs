@@ -23,6 +23,7 @@ mod output;
 mod progress;
 mod session;
 mod settings;
+mod soundness;
 mod streams;
 
 pub use explanations::explanation;

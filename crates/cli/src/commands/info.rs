@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use serde_json::{Map, Value, json};
-use shapeloom_core::Exec;
-use shapeloom_mesh::{Attributes, Domain, MeshAttributes, PolyMesh, TriMesh};
+use shapeloom_core::{Exec, Findings, Place, Severity};
+use shapeloom_judge::MeshRef;
+use shapeloom_mesh::{Attributes, Domain, MeshAttributes};
 use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use crate::account;
@@ -13,6 +14,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::session::Session;
 use crate::settings::Settings;
+use crate::soundness::Soundness;
 
 pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Result<(), Failure> {
     let settings = Settings::sort(&arguments.settings);
@@ -22,18 +24,22 @@ pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Resul
         let message = format!("found --set {key}, expected an option of the input");
         return Err(Failure::usage("E-usage-setting", message));
     }
-    let mut object = describe(&input.read.shape, &session.exec())?;
+    let mut findings = input.read.findings.clone();
+    let mut object = describe(&input.read.shape, &mut findings, &session.exec())?;
     object.insert("schema".into(), json!("shapeloom.info/1"));
     object.insert("file".into(), json!(input.name));
     object.insert("format".into(), json!(input.format.id));
     object.insert("bytes".into(), json!(input.bytes));
-    object.insert("findings".into(), account::findings(&input.read.findings));
+    object.insert("findings".into(), account::findings(&findings));
     object.insert("losses".into(), account::losses(&input.read.losses));
     if session.globals.json { session.print_json(&Value::Object(object)) } else { session.print(words(&object)) }
 }
 
+/// The most parts of which each has the whole report: all of it takes some three kilobytes as JSON.
+const FULLY_TOLD: usize = 1000;
+
 /// Everything about a shape as one object: counts are sums over the parts as they are placed.
-fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
+fn describe(shape: &Shape, findings: &mut Findings, exec: &Exec) -> Result<Map<String, Value>, Failure> {
     let mut object = Map::new();
     let kinds = shape.kinds();
     let kind = match kinds.as_slice() {
@@ -43,11 +49,16 @@ fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
     };
     object.insert("kind".into(), json!(kind));
     let meshes = kinds.iter().any(|kind| matches!(kind, Kind::TriMesh | Kind::PolyMesh));
-    let mut totals = Totals { meshes, ..Totals::default() };
+    let brief = shape.parts.len() > FULLY_TOLD;
+    if brief {
+        let message = format!("more than {FULLY_TOLD} parts: each is told by its counts alone");
+        findings.push("W-info-parts", Severity::Note, Place::Whole, message);
+    }
+    let mut totals = Totals { meshes, brief, ..Totals::default() };
     let mut parts = Vec::new();
     for part in &shape.parts {
         exec.check()?;
-        parts.push(totals.add(part, shape, exec)?);
+        parts.push(totals.add(part, shape, findings, exec)?);
     }
     totals.tell(&mut object);
     object.insert("parts".into(), Value::Array(parts));
@@ -80,9 +91,10 @@ fn describe(shape: &Shape, exec: &Exec) -> Result<Map<String, Value>, Failure> {
 #[derive(Default)]
 struct Totals {
     meshes: bool,
+    /// Whether parts are told in few words.
+    brief: bool,
     counts: Map<String, Value>,
-    area: Option<f64>,
-    volume: Option<f64>,
+    soundness: Option<Soundness>,
     /// Domain, name, width (none for lists) and type.
     attributes: BTreeSet<(String, String, Option<usize>, String)>,
 }
@@ -111,14 +123,27 @@ impl Totals {
         }
     }
 
-    fn surface(&mut self, part: &mut Map<String, Value>, area: f64, volume: f64) {
-        part.insert("area".into(), account::number(area));
-        part.insert("volume".into(), account::number(volume));
-        self.area = Some(self.area.unwrap_or(0.0) + area);
-        self.volume = Some(self.volume.unwrap_or(0.0) + volume);
+    fn mesh<'a>(
+        &mut self,
+        part: &mut Map<String, Value>,
+        mesh: impl Into<MeshRef<'a>>,
+        findings: &mut Findings,
+        exec: &Exec,
+    ) -> Result<(), Failure> {
+        let found = Soundness::of(mesh, exec, findings)?;
+        if self.brief {
+            found.tell_briefly(part)
+        } else {
+            found.tell(part)
+        }
+        self.soundness = Some(match self.soundness.take() {
+            Some(before) => before.with(&found),
+            None => found,
+        });
+        Ok(())
     }
 
-    fn add(&mut self, part: &Part, shape: &Shape, exec: &Exec) -> Result<Value, Failure> {
+    fn add(&mut self, part: &Part, shape: &Shape, findings: &mut Findings, exec: &Exec) -> Result<Value, Failure> {
         let mut object = Map::new();
         object.insert("name".into(), json!(part.name));
         object.insert("kind".into(), json!(part.geometry.kind().name()));
@@ -128,19 +153,13 @@ impl Totals {
         let placed = part.placed();
         match &*placed {
             Geometry::TriMesh(mesh) => {
-                self.count(&mut object, "vertices", mesh.positions().len());
-                self.count(&mut object, "edges", triangle_edges(mesh, exec)?);
-                self.count(&mut object, "faces", mesh.triangles().len());
+                self.mesh(&mut object, mesh, findings, exec)?;
                 self.count(&mut object, "triangles", mesh.triangles().len());
-                self.surface(&mut object, mesh.area(), mesh.volume());
                 self.mesh_attributes(mesh.attributes());
             }
             Geometry::PolyMesh(mesh) => {
-                self.count(&mut object, "vertices", mesh.positions().len());
-                self.count(&mut object, "edges", polygon_edges(mesh, exec)?);
-                self.count(&mut object, "faces", mesh.face_count());
+                self.mesh(&mut object, mesh, findings, exec)?;
                 self.count(&mut object, "triangles", mesh.triangle_count());
-                self.surface(&mut object, mesh.area(), mesh.volume());
                 self.mesh_attributes(mesh.attributes());
             }
             Geometry::PointCloud(cloud) => {
@@ -187,9 +206,8 @@ impl Totals {
 
     fn tell(self, object: &mut Map<String, Value>) {
         object.extend(self.counts);
-        if let (Some(area), Some(volume)) = (self.area, self.volume) {
-            object.insert("area".into(), account::number(area));
-            object.insert("volume".into(), account::number(volume));
+        if let Some(soundness) = self.soundness {
+            soundness.tell(object);
         }
         let one = |(domain, name, width, kind): (String, String, Option<usize>, String)| match width {
             Some(width) => json!({ "domain": domain, "name": name, "width": width, "type": kind }),
@@ -197,28 +215,6 @@ impl Totals {
         };
         object.insert("attributes".into(), self.attributes.into_iter().map(one).collect());
     }
-}
-
-fn distinct(mut edges: Vec<[u32; 2]>) -> usize {
-    edges.sort_unstable();
-    edges.dedup();
-    edges.len()
-}
-
-fn rising(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
-fn triangle_edges(mesh: &TriMesh, exec: &Exec) -> Result<usize, Failure> {
-    let _memory = exec.reserve_elements(mesh.triangles().len() as u64 * 3, 8)?;
-    let sides = mesh.triangles().iter().flat_map(|&[a, b, c]| [rising(a, b), rising(b, c), rising(c, a)]);
-    Ok(distinct(sides.filter(|[a, b]| a != b).collect()))
-}
-
-fn polygon_edges(mesh: &PolyMesh, exec: &Exec) -> Result<usize, Failure> {
-    let _memory = exec.reserve_elements(mesh.wedge_vertices().len() as u64, 8)?;
-    let sides = mesh.faces().flat_map(|face| (0..face.len()).map(move |k| rising(face[k], face[(k + 1) % face.len()])));
-    Ok(distinct(sides.filter(|[a, b]| a != b).collect()))
 }
 
 /// The object in lines of words: single values first, then what has a line each.
@@ -244,8 +240,21 @@ fn words(object: &Map<String, Value>) -> String {
         lines.push(format!("{}: {value}", key.replace('_', " ")));
     }
     for (key, value) in object.iter().filter_map(|(key, value)| Some((key, value.as_array()?))) {
+        // The only part is what was told above.
+        if key == "parts" && value.len() == 1 {
+            continue;
+        }
         for item in value {
             let item = match item {
+                Value::Object(_) if key == "findings" => {
+                    lines.push(format!(
+                        "{}[{}]: {}",
+                        text(&item["severity"]),
+                        text(&item["code"]),
+                        text(&item["message"])
+                    ));
+                    continue;
+                }
                 Value::Object(fields) => {
                     let shown = fields.iter().filter(|(_, value)| **value != json!(""));
                     shown.map(|(name, value)| format!("{name} {}", text(value))).collect::<Vec<_>>().join(", ")
@@ -275,7 +284,7 @@ mod tests {
         columns.insert(Column::labels("size", vec![0; 4])).unwrap();
         let tables = vec![Table { name: "rows".into(), columns }];
         let shape = Shape { tables, comments: vec!["made by hand".into()], ..Shape::new(Part::new(graph)) };
-        let told = Value::Object(describe(&shape, &Exec::default()).unwrap());
+        let told = Value::Object(describe(&shape, &mut Findings::default(), &Exec::default()).unwrap());
         assert_eq!((&told["kind"], &told["edges"]), (&json!("geometric-graph"), &json!(1)));
         assert_eq!(
             told["attributes"],
