@@ -31,6 +31,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "A vertex of a mesh is at a position that is infinite or not a number, so nothing about its geometry can be decided. Repair the file, or leave such vertices out with --drop-non-finite.",
     ),
     (
+        "E-judge-query",
+        "A point that was asked about is not finite, or so close to a coordinate plane beside the shape's size (below about 1e-86 of it) that exact arithmetic would lose bits.",
+    ),
+    (
         "E-judge-underflow",
         "A coordinate is so small beside the largest of the shape (below about 1e-86 of it) that exact arithmetic on it would lose bits. Nothing is guessed: set coordinates that small to 0.",
     ),

@@ -25,6 +25,11 @@ pub enum JudgeError {
         /// The largest coordinate of the shape in magnitude.
         largest: f64,
     },
+    /// A point that is asked about is not finite, or so small beside the shape that exact arithmetic would underflow.
+    Query {
+        /// The point as given.
+        found: DVec3,
+    },
     /// No hierarchy could be built over the triangles.
     Bvh(BvhError),
     /// The memory budget does not allow it.
@@ -63,6 +68,11 @@ impl fmt::Display for JudgeError {
                  that its products vanish",
                 VectorWords(*found)
             ),
+            Self::Query { found } => write!(
+                f,
+                "judge: found a query at {}, expected finite coordinates, none so small that their products vanish",
+                VectorWords(*found)
+            ),
             Self::Bvh(error) => error.fmt(f),
             Self::OverBudget(error) => error.fmt(f),
             Self::Stop(stop) => stop.fmt(f),
@@ -86,6 +96,7 @@ impl Diagnostic for JudgeError {
         match self {
             Self::NotFinite { .. } => "E-judge-finite",
             Self::Underflow { .. } => "E-judge-underflow",
+            Self::Query { .. } => "E-judge-query",
             Self::Bvh(error) => error.code(),
             Self::OverBudget(error) => error.code(),
             Self::Stop(stop) => stop.code(),
@@ -96,6 +107,7 @@ impl Diagnostic for JudgeError {
         match self {
             Self::NotFinite { .. } => Category::Malformed,
             Self::Underflow { .. } => Category::Unsupported,
+            Self::Query { .. } => Category::Usage,
             Self::Bvh(error) => error.category(),
             Self::OverBudget(error) => error.category(),
             Self::Stop(stop) => stop.category(),
@@ -106,6 +118,7 @@ impl Diagnostic for JudgeError {
         match self {
             Self::NotFinite { .. } => Some("leave such vertices out with --drop-non-finite".into()),
             Self::Underflow { .. } => Some("set coordinates that small to 0".into()),
+            Self::Query { .. } => None,
             Self::Bvh(error) => error.advice(),
             Self::OverBudget(error) => error.advice(),
             Self::Stop(stop) => stop.advice(),

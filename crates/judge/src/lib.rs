@@ -7,7 +7,10 @@ mod error;
 mod faces;
 mod measures;
 mod mesh_ref;
+mod polygon;
 mod scaled;
+mod segments;
+mod solid;
 mod topology;
 mod union_find;
 
@@ -15,5 +18,7 @@ pub use error::JudgeError;
 pub use faces::Faces;
 pub use measures::Measures;
 pub use mesh_ref::MeshRef;
+pub use polygon::{NotConvex, PolygonReport};
 pub use scaled::Scaled;
+pub use solid::{Location, Solid};
 pub use topology::{BoundaryLoops, Component, Topology};

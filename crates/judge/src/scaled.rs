@@ -34,17 +34,30 @@ impl Scaled {
             return Ok(Self { positions: positions.to_vec(), exponent: 0 });
         }
         let exponent = -(exponent_of(largest) + 1);
-        let too_fine = |&position: &DVec3| {
-            let bits = position.to_array().map(lowest_bit);
-            bits.into_iter().flatten().any(|bit| bit + exponent < Self::LOWEST_BIT)
-        };
-        if let Some(vertex) = positions.iter().position(too_fine) {
+        if let Some(vertex) = positions.iter().position(|&position| is_too_fine(position, exponent)) {
             return Err(JudgeError::Underflow { vertex: vertex as u32, found: positions[vertex], largest });
         }
-        // Up to 2^1073: in two steps, each of them a number.
-        let [first, second] = [exponent / 2, exponent - exponent / 2].map(|half| 2f64.powi(half));
-        Ok(Self { positions: positions.iter().map(|&position| position * first * second).collect(), exponent })
+        Ok(Self { positions: positions.iter().map(|&position| times_power(position, exponent)).collect(), exponent })
     }
+
+    /// A point on the scale of a shape; none if it is not finite, larger than the shape's largest coordinate could be, or
+    /// has bits that exact products would lose.
+    pub(crate) fn point(point: DVec3, exponent: i32) -> Option<DVec3> {
+        let moved = times_power(point, exponent);
+        (moved.is_finite() && moved.abs().max_element() <= 1.0 && !is_too_fine(point, exponent)).then_some(moved)
+    }
+}
+
+/// Whether a position, scaled, has bits that exact products of three would lose.
+fn is_too_fine(position: DVec3, exponent: i32) -> bool {
+    let bits = position.to_array().map(lowest_bit);
+    bits.into_iter().flatten().any(|bit| bit + exponent < Scaled::LOWEST_BIT)
+}
+
+/// A vector times a power of two up to 2^1073: in two steps, each of them a number.
+pub(crate) fn times_power(vector: DVec3, exponent: i32) -> DVec3 {
+    let [first, second] = [exponent / 2, exponent - exponent / 2].map(|half| 2f64.powi(half));
+    vector * first * second
 }
 
 /// The exponent `e` of a positive number in `[2^e, 2^(e+1))`.

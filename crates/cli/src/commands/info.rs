@@ -261,7 +261,8 @@ fn words(object: &Map<String, Value>) -> String {
                 }
                 other => text(other),
             };
-            lines.push(format!("{}: {item}", key.trim_end_matches('s')));
+            let one = if key == "losses" { "lost" } else { key.strip_suffix('s').unwrap_or(key) };
+            lines.push(format!("{one}: {item}"));
         }
     }
     lines.join("\n")
