@@ -62,6 +62,22 @@ impl Findings {
         }
     }
 
+    /// Adds as many observations as `count`, of which the first places are given; none if `count` is 0.
+    pub fn push_all(
+        &mut self,
+        code: &'static str,
+        severity: Severity,
+        message: impl Into<String>,
+        count: u64,
+        places: impl IntoIterator<Item = Place>,
+    ) {
+        if count > 0 {
+            let places = places.into_iter().take(Self::PLACES_KEPT).collect();
+            let finding = Finding { code, severity, message: message.into(), places, count };
+            self.extend(Self(vec![finding]));
+        }
+    }
+
     /// The same with every place made another.
     #[must_use]
     pub fn with_places(mut self, f: impl Fn(Place) -> Place) -> Self {

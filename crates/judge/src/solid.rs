@@ -58,6 +58,18 @@ impl<'a> Solid<'a> {
         Ok(Self { triangles: mesh.triangles(), positions, bounds, exponent, _memory: memory })
     }
 
+    /// Six times the signed volume under some triangles to one of their corners, on the scale of the mesh, in floating point.
+    pub(crate) fn volume_of(&self, triangles: &[u32]) -> f64 {
+        let corners = |triangle: u32| self.triangles[triangle as usize].map(|vertex| self.positions[vertex as usize]);
+        let Some(&first) = triangles.first() else { return 0.0 };
+        let center = corners(first)[0];
+        let under = |&triangle: &u32| {
+            let [a, b, c] = corners(triangle).map(|corner| corner - center);
+            a.dot(b.cross(c))
+        };
+        triangles.iter().map(under).sum()
+    }
+
     /// Where a point lies relative to the whole mesh.
     ///
     /// # Errors

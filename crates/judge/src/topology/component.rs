@@ -23,14 +23,14 @@ pub struct Component {
     pub genus: Option<u64>,
 }
 
-/// The components by their smallest face. Genus is told where the mesh is manifold.
+/// The components by their smallest face, and the component of each face. Genus is told where the mesh is manifold.
 pub(super) fn components(
     faces: &Faces<'_>,
     edges: &Edges,
     boundary: &BoundaryLoops,
     twisted: &[u32],
     manifold: bool,
-) -> Vec<Component> {
+) -> (Vec<Component>, Vec<u32>) {
     let mut joined = DisjointSets::new(faces.len());
     for uses in edges.iter() {
         let first = faces.face_of(uses[0]);
@@ -95,5 +95,5 @@ pub(super) fn components(
             component.genus = whole.and_then(|genus| u64::try_from(genus).ok());
         }
     }
-    found
+    (found, number)
 }

@@ -56,6 +56,8 @@ pub struct Topology {
     pub duplicate_faces: Vec<[u32; 2]>,
     /// The parts that are joined through edges, by their smallest face.
     pub components: Vec<Component>,
+    /// The component of each face.
+    pub face_components: Vec<u32>,
     _memory: Reservation,
 }
 
@@ -104,7 +106,7 @@ impl Topology {
         let non_manifold_vertices = of_count(|count| count > 1);
         let boundary = BoundaryLoops::new(faces, &edges);
         let manifold = non_manifold_edges.is_empty() && non_manifold_vertices.is_empty();
-        let components = components(faces, &edges, &boundary, &orientation.twisted, manifold);
+        let (components, face_components) = components(faces, &edges, &boundary, &orientation.twisted, manifold);
         exec.check()?;
         exec.progress(0.9);
         let duplicate_faces = duplicate_faces(faces);
@@ -140,6 +142,7 @@ impl Topology {
             repeating_faces,
             duplicate_faces,
             components,
+            face_components,
             _memory: memory,
         })
     }
