@@ -32,6 +32,8 @@ mod properties;
 mod regressions;
 mod round_trips;
 mod same_bits;
+mod self_intersection;
 mod shapes;
 mod support;
+mod triangle_pairs;
 mod verification;

@@ -5,6 +5,10 @@
 
 mod error;
 mod scaled;
+mod self_intersection;
 
 pub use error::JudgeError;
 pub use scaled::Scaled;
+pub use self_intersection::{
+    FacePair, PairKind, PairList, SelfIntersections, self_intersections, self_intersections_of_polygons,
+};

@@ -1,5 +1,7 @@
 //! An order of points in which neighbours in the row are near in space.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use shapeloom_core::parallel::{CHUNK, fill_chunks};
 use shapeloom_core::{Exec, Stop};
@@ -18,7 +20,7 @@ pub(crate) fn space_order(
     exec: &Exec,
 ) -> Result<Vec<u32>, Stop> {
     let mut keyed: Vec<(u64, u32)> = (0..count).map(|item| (0, item)).collect();
-    let mut open = vec![0..keyed.len()];
+    let mut open: Vec<Range<usize>> = std::iter::once(0..keyed.len()).collect();
     while let Some(range) = open.pop() {
         exec.check()?;
         let part = &mut keyed[range.clone()];
