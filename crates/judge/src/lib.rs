@@ -3,6 +3,7 @@
 //! The judge shares nothing with what it judges but the lowest floors, and is itself held against brute force in exact
 //! arithmetic. Every answer that says "no" comes with a witness: the elements that show it.
 
+mod check;
 mod error;
 mod faces;
 mod measures;
@@ -10,15 +11,21 @@ mod mesh_ref;
 mod polygon;
 mod scaled;
 mod segments;
+mod self_intersection;
 mod solid;
 mod topology;
+mod triangulated;
 mod union_find;
 
+pub use check::{NotPolyhedron, Profile, RULES, Rule, Shell, Verdict};
 pub use error::JudgeError;
 pub use faces::Faces;
 pub use measures::Measures;
 pub use mesh_ref::MeshRef;
 pub use polygon::{NotConvex, PolygonReport};
 pub use scaled::Scaled;
+pub use self_intersection::{
+    FacePair, PairKind, PairList, SelfIntersections, self_intersections, self_intersections_of_polygons,
+};
 pub use solid::{Location, Solid};
 pub use topology::{BoundaryLoops, Component, Topology};

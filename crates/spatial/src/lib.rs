@@ -17,6 +17,7 @@
 //! # Ok::<(), shapeloom_spatial::BvhError>(())
 //! ```
 
+mod box_pairs;
 mod closest_point;
 mod equal_triangles;
 mod error;
@@ -24,10 +25,12 @@ mod error;
 mod fixtures;
 mod hierarchy;
 mod rays;
+mod space_order;
 mod stack;
 mod triangle_bvh;
 mod triangle_point;
 mod triangle_ray;
 
+pub use box_pairs::BoxPairs;
 pub use error::BvhError;
 pub use triangle_bvh::TriangleBvh;

@@ -43,10 +43,10 @@ mod tests {
             for (degrees, sliver) in [(0.99f64, true), (1.01, false), (60.0, false), (0.01, true)] {
                 let (sine, cosine) = degrees.to_radians().sin_cos();
                 for along in [0.01, 1.0, 3.0] {
-                    let corners = [DVec3::ZERO, DVec3::X * along, DVec3::new(cosine, sine, 0.0)].map(|p| p * size);
+                    let [a, b, c] = [DVec3::ZERO, DVec3::X * along, DVec3::new(cosine, sine, 0.0)];
                     // Between sides of 1 and 0.01 the third corner's angle is the smallest, and smaller.
-                    let third = corners[1] - corners[2];
-                    let other = third.angle_between(-corners[2]).min((-third).angle_between(-corners[1])).to_degrees();
+                    let other = (b - c).angle_between(a - c).min((c - b).angle_between(a - b)).to_degrees();
+                    let corners = [a, b, c].map(|corner| corner * size);
                     let wanted = sliver || other < SMALLEST;
                     assert_eq!(is_sliver(corners, SMALLEST.to_radians().sin()), wanted, "{size} {degrees} {along}");
                 }

@@ -32,7 +32,8 @@ pub(super) fn shells(mesh: &TriMesh, topology: &Topology, exec: &Exec) -> Result
     let _memory = exec.reserve(triangles.len() as u64 * 4 + topology.components.len() as u64 * 80)?;
     let members = Members::new(topology);
     // A vertex of an edge with one face, with many or with faces that do not turn alike is on no shell.
-    let edges = topology.boundary.edges().iter().chain(&topology.non_manifold_edges).chain(&topology.inconsistent_edges);
+    let edges =
+        topology.boundary.edges().iter().chain(&topology.non_manifold_edges).chain(&topology.inconsistent_edges);
     let mut faulty: Vec<u32> = edges.flatten().copied().collect();
     faulty.sort_unstable();
     faulty.dedup();

@@ -1,12 +1,13 @@
 //! Everything that the judge knows of a mesh, and what it says to a purpose.
 
-use shapeloom_core::{Convert, Exec, Findings, Place, Severity};
-use shapeloom_mesh::{Domain, NORMAL, PolyMesh, TriMesh, TriangulatePolygons};
+use shapeloom_core::{Exec, Findings, Place, Severity};
+use shapeloom_mesh::{Domain, NORMAL, PolyMesh};
 
 use super::angles::{SMALLEST, slivers};
 use super::shells::shells;
 use super::{Profile, Shell};
 use crate::self_intersection::{PairList, SelfIntersections, self_intersections, self_intersections_of_polygons};
+use crate::triangulated::triangulated;
 use crate::{JudgeError, Measures, MeshRef, PolygonReport, Topology};
 
 /// What is known of a mesh, and what of it is against the rules of a purpose.
@@ -22,6 +23,16 @@ pub struct Verdict {
     pub self_intersections: SelfIntersections,
     /// The closed shells.
     pub shells: Vec<Shell>,
+}
+
+/// What else the rules ask about.
+struct Details {
+    /// Slivers, by triangle.
+    thin: Vec<u32>,
+    /// Polygons that meet themselves.
+    tangled: Vec<u32>,
+    /// Whether there are normals.
+    normals: bool,
 }
 
 /// Why a mesh is no polyhedron, with a witness.
@@ -60,25 +71,38 @@ impl Verdict {
             MeshRef::Triangles(mesh) => self_intersections(mesh, Self::LISTED, &crossings)?,
             MeshRef::Polygons(mesh) => self_intersections_of_polygons(mesh, Self::LISTED, &crossings)?,
         };
-        let mut findings = Findings::default();
         let (shells, thin, tangled) = match mesh {
             MeshRef::Triangles(mesh) => {
                 (shells(mesh, &topology, &exec.part(0.8, 1.0))?, slivers(mesh, exec)?, Vec::new())
             }
             MeshRef::Polygons(mesh) => {
                 let tangled = tangled(mesh, exec)?;
-                let triangles = triangles_of(mesh, exec)?;
+                let triangles = triangulated(mesh, exec)?;
                 let topology = Topology::of(&triangles, exec)?;
                 (shells(&triangles, &topology, &exec.part(0.8, 1.0))?, slivers(&triangles, exec)?, tangled)
             }
         };
+        let normals = [Domain::Vertex, Domain::Wedge].iter().any(|&domain| match mesh {
+            MeshRef::Triangles(mesh) => mesh.attribute(domain, NORMAL).is_some(),
+            MeshRef::Polygons(mesh) => mesh.attribute(domain, NORMAL).is_some(),
+        });
+        let mut verdict = Self { findings: Findings::default(), topology, measures, self_intersections, shells };
+        verdict.findings = verdict.against(profile, &Details { thin, tangled, normals });
         exec.progress(1.0);
+        Ok(verdict)
+    }
+
+    /// What is against the rules of a purpose.
+    fn against(&self, profile: Profile, details: &Details) -> Findings {
+        let Self { topology, measures, self_intersections, shells, .. } = self;
+        let Details { thin, tangled, normals } = details;
+        let mut findings = Findings::default();
         let mut rule = |code, message: &str, count: usize, places: &mut dyn Iterator<Item = Place>| {
             if profile.asks_for(code) {
                 findings.push_all(code, Severity::Warning, message, count as u64, places);
             }
         };
-        let t = &topology;
+        let t = topology;
         let vertex = |&vertex: &u32| Place::element("vertex", vertex.into());
         let face = |&face: &u32| Place::element("face", face.into());
         let edge = |&[a, b]: &[u32; 2]| Place::edge(a, b);
@@ -120,7 +144,7 @@ impl Verdict {
         rule("W-check-duplicate", "a face repeats another", again.len(), &mut again.iter().map(pair));
         rule("W-check-polygon", "a polygon meets itself", tangled.len(), &mut tangled.iter().map(face));
         let meeting = |list: &PairList| list.listed.iter().map(|pair| pair.faces).collect::<Vec<_>>();
-        let SelfIntersections { crossing, overlapping, touching, .. } = &self_intersections;
+        let SelfIntersections { crossing, overlapping, touching, .. } = self_intersections;
         for (code, message, list) in [
             ("W-check-crossing", "a face passes through another", crossing),
             ("W-check-overlap", "two faces overlap in a plane", overlapping),
@@ -133,12 +157,8 @@ impl Verdict {
         let message = format!("a triangle has an angle below {SMALLEST} degree");
         let mut places = thin.iter().map(|&triangle| Place::element("triangle", triangle.into()));
         rule("W-check-sliver", &message, thin.len(), &mut places);
-        let normals = [Domain::Vertex, Domain::Wedge].iter().any(|&domain| match mesh {
-            MeshRef::Triangles(mesh) => mesh.attribute(domain, NORMAL).is_some(),
-            MeshRef::Polygons(mesh) => mesh.attribute(domain, NORMAL).is_some(),
-        });
         rule("W-check-normals", "there are no normals to shade with", usize::from(!normals), &mut whole());
-        Ok(Self { findings, topology, measures, self_intersections, shells })
+        findings
     }
 
     /// Whether the mesh is the surface of one polyhedron: every edge has two faces, the faces at every vertex are one fan,
@@ -178,13 +198,4 @@ fn tangled(mesh: &PolyMesh, exec: &Exec) -> Result<Vec<u32>, JudgeError> {
         }
     }
     Ok(found)
-}
-
-fn triangles_of(mesh: &PolyMesh, exec: &Exec) -> Result<TriMesh, JudgeError> {
-    use shapeloom_core::ConvertError;
-    let plain = mesh.clone();
-    TriangulatePolygons::new().convert_with(&plain, exec).map(|converted| converted.value).map_err(|error: ConvertError| {
-        let _ = error;
-        JudgeError::Stop(shapeloom_core::Stop::Cancelled)
-    })
 }
