@@ -5,6 +5,7 @@
 
 mod bench;
 mod between_formats;
+mod check;
 mod codes;
 mod collection;
 mod collection_gltf;

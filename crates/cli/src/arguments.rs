@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use shapeloom_core::{ChoiceOption, Tolerance, ToleranceError};
+use shapeloom_judge::Profile;
 use shapeloom_render::Mode;
 
 /// Represents shapes in many forms, converts any of them into any other, and says what each conversion cost.
@@ -59,6 +60,8 @@ pub(crate) enum Command {
     Convert(ConvertArguments),
     /// Say what a file holds
     Info(InfoArguments),
+    /// Say whether a file is sound for a purpose; exit code 1 if it is not
+    Check(CheckArguments),
     /// Draw a picture of a file
     Render(RenderArguments),
     /// Make a ready shape
@@ -145,6 +148,23 @@ pub(crate) struct InfoArguments {
     /// An option of the input, as often as needed: key=value
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) settings: Vec<(String, String)>,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// The file to read, or - for standard input
+    pub(crate) input: PathBuf,
+    /// What the shape is for
+    #[arg(long, value_name = "PROFILE", default_value = "general",
+          value_parser = PossibleValuesParser::new(<Profile as ChoiceOption>::NAMES))]
+    pub(crate) profile: String,
+    /// Merge vertices at exactly the same position first, as files without shared vertices need it
+    #[arg(long)]
+    pub(crate) weld: bool,
+    #[command(flatten)]
+    pub(crate) way: WayArguments,
     #[command(flatten)]
     pub(crate) source: SourceArguments,
 }

@@ -23,6 +23,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-camera-height", "The height of a parallel view is not a positive number."),
     ("E-camera-view", "The view direction is zero or parallel to the up direction."),
     ("E-cancelled", "The work was interrupted; nothing was written."),
+    ("E-check-kind", "The file holds nothing with a surface that could be checked: points, lines, or nothing at all."),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
@@ -97,6 +98,47 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-setting", "An option given with --set means nothing here: for this format, or for this command."),
     ("E-usage-shape", "There is no ready shape of that name."),
     ("E-usage-threads", "That many threads could not be started."),
+    (
+        "W-check-contact",
+        "Two faces touch in a point, along a segment or all over, beside the corners and sides that they share.",
+    ),
+    (
+        "W-check-crossing",
+        "The inside of a face passes through the inside of another. Decided exactly; faces that only touch do not cross.",
+    ),
+    ("W-check-degenerate", "A face has no area, decided exactly, or names a vertex twice."),
+    ("W-check-duplicate", "A face has the same vertices in the same order, either way around, as an earlier one."),
+    ("W-check-edge", "An edge has more than two faces, so the surface is no manifold there."),
+    ("W-check-empty", "A mesh has no faces."),
+    (
+        "W-check-inverted",
+        "A closed shell faces the wrong way: an outer shell whose faces look inward, or a shell within another whose faces look outward. A shell in an odd number of others bounds a cavity and faces inward.",
+    ),
+    ("W-check-isolated", "A vertex belongs to no face."),
+    ("W-check-normals", "A mesh to be drawn in real time has no normals, on vertices or on corners."),
+    (
+        "W-check-open",
+        "Edges with only one face: the surface has a border, so it encloses nothing. The places are the first edge of each loop. If vertices lie exactly where others do, check --weld merges them first.",
+    ),
+    (
+        "W-check-orientable",
+        "The surface is one-sided, like a Moebius strip: the faces named form a ring, each beside the next, after which the first would be turned over.",
+    ),
+    (
+        "W-check-orientation",
+        "Two faces run along their common edge in the same direction, so one of them is turned over.",
+    ),
+    ("W-check-overlap", "Two faces lie in one plane and have an area in common."),
+    (
+        "W-check-polygon",
+        "The sides of a polygon meet elsewhere than at the corner between neighbours: it crosses, touches or folds back on itself.",
+    ),
+    ("W-check-sliver", "A triangle has an area but an angle below one degree, which makes simulations slow or wrong."),
+    (
+        "W-check-vertex",
+        "The faces at a vertex are not one fan around it: parts of the surface meet in that vertex alone.",
+    ),
+    ("W-check-volume", "A closed surface encloses a volume of 0 or less, so there is nothing to print."),
     (
         "W-info-open",
         "The surface has a border, or faces that share an edge do not turn alike, so it encloses no volume: the number given is the signed volume of the cones from the faces to the centre of the bounding box, and changes with that centre.",

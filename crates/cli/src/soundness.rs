@@ -47,12 +47,29 @@ impl Soundness {
             }
             Err(error) => return Err(error.into()),
         };
+        let found = Self::new(&topology, measures.as_ref());
+        if let Some(measures) = measures
+            && (measures.area.is_none() || measures.volume.is_none())
+        {
+            let message = "the area or volume is beyond the numbers, or so small that it vanishes: scale the shape";
+            findings.push("W-info-size", Severity::Warning, Place::Whole, message);
+        }
+        if found.faces > 0 && !(found.closed && found.is_oriented()) {
+            let message = "the surface is open or its faces do not turn alike: the volume is that of the cones to the centre \
+                           of the bounding box, and encloses nothing";
+            findings.push("W-info-open", Severity::Note, Place::Whole, message);
+        }
+        Ok(found)
+    }
+
+    /// The numbers of what the judge found.
+    pub(crate) fn new(topology: &Topology, measures: Option<&Measures>) -> Self {
         let degenerate = |measures: &Measures| {
             // Both lists rise.
             let flat = &measures.flat_faces;
             flat.len() + topology.repeating_faces.iter().filter(|&face| flat.binary_search(face).is_err()).count()
         };
-        let found = Self {
+        Self {
             vertices: topology.vertices,
             edges: topology.edges,
             faces: topology.faces,
@@ -70,23 +87,11 @@ impl Soundness {
             crosscaps: topology.crosscaps(),
             duplicate_faces: topology.duplicate_faces.len(),
             isolated_vertices: topology.isolated_vertices.len(),
-            degenerate_faces: measures.as_ref().map(degenerate),
-            coincident_vertices: measures.as_ref().map(|measures| measures.coincident_vertices.len()),
-            area: measures.as_ref().and_then(|measures| measures.area),
-            volume: measures.as_ref().and_then(|measures| measures.volume),
-        };
-        if let Some(measures) = measures
-            && (measures.area.is_none() || measures.volume.is_none())
-        {
-            let message = "the area or volume is beyond the numbers, or so small that it vanishes: scale the shape";
-            findings.push("W-info-size", Severity::Warning, Place::Whole, message);
+            degenerate_faces: measures.map(degenerate),
+            coincident_vertices: measures.map(|measures| measures.coincident_vertices.len()),
+            area: measures.and_then(|measures| measures.area),
+            volume: measures.and_then(|measures| measures.volume),
         }
-        if found.faces > 0 && !(found.closed && found.is_oriented()) {
-            let message = "the surface is open or its faces do not turn alike: the volume is that of the cones to the centre \
-                           of the bounding box, and encloses nothing";
-            findings.push("W-info-open", Severity::Note, Place::Whole, message);
-        }
-        Ok(found)
     }
 
     fn is_oriented(&self) -> bool {

@@ -109,7 +109,7 @@ fn findings_name_their_elements() {
     let verdict = Verdict::of(&open, Profile::General, &Exec::default()).unwrap();
     let finding = verdict.findings.iter().next().unwrap();
     assert_eq!((finding.count, finding.places.len()), (3, 1));
-    assert!(matches!(finding.places[0], Place::Edge { .. }) && finding.message.contains("1 loops"));
+    assert!(matches!(finding.places[0], Place::Edge { .. }) && finding.message.contains("in 1 loop"));
     let crossing = cubes(&[(DVec3::ZERO, 2.0, false), (DVec3::new(1.0, 0.5, 0.25), 2.0, false)]);
     let verdict = Verdict::of(&crossing, Profile::General, &Exec::default()).unwrap();
     let finding = verdict.findings.iter().next().unwrap();

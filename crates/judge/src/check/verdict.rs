@@ -111,7 +111,10 @@ impl Verdict {
         rule("W-check-empty", "there is no face", usize::from(t.faces == 0), &mut whole());
         let loops = t.boundary.len();
         let border = t.boundary.edges().len();
-        let mut open = format!("the surface is open: {border} edges have only one face, in {loops} loops");
+        let mut open = format!(
+            "the surface is open: {border} edges have only one face, in {loops} {}",
+            if loops == 1 { "loop" } else { "loops" }
+        );
         if !measures.coincident_vertices.is_empty() {
             let equal = measures.coincident_vertices.len();
             open += &format!("; {equal} vertices lie exactly where others do, and may only need welding");
@@ -133,7 +136,7 @@ impl Verdict {
         let mut places = inverted.iter().map(|shell| Place::element("component", shell.component.into()));
         let message = "a closed shell faces the wrong way: an outer one inward, or one within another outward";
         rule("W-check-inverted", message, inverted.len(), &mut places);
-        let no_volume = t.is_closed() && measures.volume.is_some_and(|volume| volume <= 0.0);
+        let no_volume = t.is_closed() && t.is_oriented() && measures.volume.is_some_and(|volume| volume <= 0.0);
         rule("W-check-volume", "the volume enclosed is not above 0", usize::from(no_volume), &mut whole());
         let mut degenerate: Vec<u32> = measures.flat_faces.iter().chain(&t.repeating_faces).copied().collect();
         degenerate.sort_unstable();
