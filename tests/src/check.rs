@@ -95,3 +95,35 @@ fn files_of_the_collection_have_their_defects() {
         assert_eq!(outcome.code, u8::from(!wanted.is_empty()));
     }
 }
+
+#[test]
+fn lines_are_judged_as_polygons() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let dart = write(&folder, "dart.obj", "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nl 1 2 3 4 1\n");
+    let part = run(&["info", &dart, "--json"]).json()["parts"][0].clone();
+    for (key, known) in [("closed", true), ("planar", true), ("simple", true), ("convex", false)] {
+        assert_eq!(part[key], known, "{key}");
+    }
+    assert_eq!(part["witnesses"]["not_convex"]["corner"], 2);
+    let bow = write(&folder, "bow.obj", "v 0 0 0\nv 4 4 0\nv 4 0 1\nv 0 4 0\nv 1 1 9\nl 1 2 3 4\n");
+    let part = run(&["info", &bow, "--json"]).json()["parts"][0].clone();
+    assert_eq!((&part["closed"], &part["gap"]), (&false.into(), &4.0.into()));
+    assert_eq!((&part["planar"], &part["simple"]), (&false.into(), &true.into()));
+}
+
+/// The page has a line for each rule, with who asks for it.
+#[test]
+fn the_page_tells_every_rule() {
+    use shapeloom::core::ChoiceOption;
+    use shapeloom::judge::{Profile, RULES};
+    let page = crate::support::text("docs/algorithms/checking_meshes.md");
+    for rule in &RULES {
+        let marks: Vec<&str> = Profile::NAMES
+            .iter()
+            .map(|name| if Profile::from_name(name).is_some_and(|one| one.asks_for(rule.code)) { "●" } else { "" })
+            .collect();
+        let line = format!("| `{}` | {} | {} |", rule.code, rule.wants, marks.join(" | "));
+        let line = line.replace("|  |", "| |").replace("|  |", "| |");
+        assert!(page.contains(&line), "the page lacks: {line}");
+    }
+}

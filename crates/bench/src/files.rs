@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Map, json};
 use shapeloom_core::{Convert, Exec};
 use shapeloom_io::{Format, ReadContext, WriteContext, detect, format_by_id, read, slurp_sized, write};
-use shapeloom_mesh::TriangulatePolygons;
+use shapeloom_mesh::{TriMesh, TriangulatePolygons};
 use shapeloom_shape::{Geometry, Shape};
 
 use crate::{Outcome, Setting, measure};
@@ -20,6 +20,20 @@ fn inputs(setting: &Setting) -> Result<Vec<PathBuf>, String> {
         return Err(format!("{folder}: found no blob_1m.ply, .stl, .obj, .off or .glb, expected at least one"));
     }
     Ok(found)
+}
+
+/// The triangles of `blob_1m.ply`, and its name.
+pub(crate) fn blob(setting: &Setting) -> Result<(TriMesh, String), String> {
+    let path = setting.data.join("blob_1m.ply");
+    let name = path.display().to_string();
+    let (shape, ..) = load(&path)?;
+    match shape.parts.first().map(|part| &*part.geometry) {
+        Some(Geometry::TriMesh(mesh)) => Ok((mesh.clone(), name)),
+        Some(Geometry::PolyMesh(mesh)) => {
+            Ok((TriangulatePolygons::new().convert(mesh).map_err(|error| error.to_string())?.value, name))
+        }
+        _ => Err(format!("{name}: found no mesh")),
+    }
 }
 
 pub(crate) fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), String> {

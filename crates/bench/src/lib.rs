@@ -8,6 +8,7 @@ mod measure;
 mod self_intersection;
 mod table;
 mod tessellate;
+mod topology;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -51,13 +52,16 @@ pub enum Task {
     Read,
     /// The same mesh to every format, in memory.
     Write,
-    /// All faces of the same mesh (PLY alone) that meet each other, exactly.
+    /// The topology report of the same mesh (PLY alone).
+    Topology,
+    /// All faces of the same mesh that meet each other, exactly.
+    #[value(name = "self_intersection", alias = "self-intersection")]
     SelfIntersection,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 4] = [Self::Tessellate, Self::Read, Self::Write, Self::SelfIntersection];
+    pub const ALL: [Self; 5] = [Self::Tessellate, Self::Read, Self::Write, Self::Topology, Self::SelfIntersection];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -65,7 +69,8 @@ impl Task {
             Self::Tessellate => "tessellate",
             Self::Read => "read",
             Self::Write => "write",
-            Self::SelfIntersection => "self-intersection",
+            Self::Topology => "topology",
+            Self::SelfIntersection => "self_intersection",
         }
     }
 }
@@ -77,6 +82,7 @@ impl Task {
         match self {
             Self::Read => format!("m.read_1m_{extension}"),
             Self::SelfIntersection => "j.self_intersection".into(),
+            Self::Topology => "p.topology".into(),
             Self::Tessellate | Self::Write => String::new(),
         }
     }
@@ -114,6 +120,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
         Task::Read => files::read_files(&setting),
         Task::Write => files::write_files(&setting),
+        Task::Topology => topology::run(&setting).map(|outcome| vec![outcome]),
         Task::SelfIntersection => self_intersection::run(&setting).map(|outcome| vec![outcome]),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.

@@ -43,6 +43,7 @@ struct Sides {
 impl Sides {
     const NONE: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
 
+    #[inline(always)]
     fn meets(&self, other: &Self) -> bool {
         // Without branches: which side parts two boxes is anyone's guess.
         (0..3).fold(true, |all, axis| all & (self.min[axis] <= other.max[axis]) & (other.min[axis] <= self.max[axis]))

@@ -36,7 +36,8 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
             true => format!("part {index}"),
             false => format!("part {index} \"{}\"", part.name),
         };
-        let Some((mesh, remark)) = meshed(&input.read.shape, index, &job, arguments.weld, &session.exec())? else {
+        let Some(Meshed { mesh, remark }) = meshed(&input.read.shape, index, &job, arguments.weld, &session.exec())?
+        else {
             words.push(format!("{named}: a {} has no faces, and was not checked", part.geometry.kind()));
             continue;
         };
@@ -85,14 +86,15 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
     if sound { Ok(()) } else { Err(Failure::Found) }
 }
 
-/// A part as a mesh where it is placed, and what was done to it for that; none where it has no faces.
-fn meshed(
-    shape: &Shape,
-    index: usize,
-    job: &Job,
-    weld: bool,
-    exec: &Exec,
-) -> Result<Option<(Arc<Geometry>, Option<String>)>, Failure> {
+/// A part as a mesh where it is placed.
+struct Meshed {
+    mesh: Arc<Geometry>,
+    /// What was done to it for that.
+    remark: Option<String>,
+}
+
+/// Makes a part a mesh; none where it has no faces.
+fn meshed(shape: &Shape, index: usize, job: &Job, weld: bool, exec: &Exec) -> Result<Option<Meshed>, Failure> {
     let part = &shape.parts[index];
     let mut remark = None;
     let mut mesh = match part.geometry.kind() {
@@ -117,7 +119,7 @@ fn meshed(
         remark = Some(format!("{merged} vertices were merged with others at the same position"));
         mesh = Arc::new(welded.into());
     }
-    Ok(Some((mesh, remark)))
+    Ok(Some(Meshed { mesh, remark }))
 }
 
 fn judged<'a>(

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use serde_json::{Map, Value, json};
-use shapeloom_core::{Exec, Findings, Place, Severity};
-use shapeloom_judge::MeshRef;
-use shapeloom_mesh::{Attributes, Domain, MeshAttributes};
+use shapeloom_core::{Diagnostic, Exec, Findings, Place, Severity};
+use shapeloom_judge::{JudgeError, MeshRef, NotConvex, PolygonReport};
+use shapeloom_mesh::{Attributes, Domain, MeshAttributes, Polyline};
 use shapeloom_shape::{Geometry, Kind, Part, Shape};
 
 use crate::account;
@@ -171,6 +171,9 @@ impl Totals {
                 self.count(&mut object, "segments", line.segments().count());
                 object.insert("length".into(), account::number(line.length()));
                 object.insert("closed".into(), json!(line.is_closed()));
+                if !self.brief {
+                    polygon(&mut object, line, findings, exec)?;
+                }
                 self.attributes("vertex", line.attributes());
             }
             Geometry::GeometricGraph(graph) => {
@@ -217,6 +220,46 @@ impl Totals {
     }
 }
 
+/// What is known of a polyline as a polygon; why it cannot be told goes into the findings.
+fn polygon(
+    object: &mut Map<String, Value>,
+    line: &Polyline,
+    findings: &mut Findings,
+    exec: &Exec,
+) -> Result<(), Failure> {
+    let report = match PolygonReport::of(line.points(), line.is_closed(), exec) {
+        Ok(report) => report,
+        Err(error @ (JudgeError::NotFinite { .. } | JudgeError::Underflow { .. })) => {
+            findings.push(error.code(), Severity::Warning, Place::Whole, error.to_string());
+            return Ok(());
+        }
+        Err(error) => return Err(error.into()),
+    };
+    object.insert("closed".into(), json!(report.is_closed()));
+    object.insert("gap".into(), json!(report.open));
+    object.insert("planar".into(), json!(report.is_planar()));
+    object.insert("flatness".into(), account::number(report.flatness));
+    object.insert("simple".into(), json!(report.is_simple()));
+    object.insert("convex".into(), json!(report.is_convex()));
+    let mut witnesses = Map::new();
+    if let Some(corners) = report.not_planar {
+        witnesses.insert("not_planar".into(), json!({ "corners": corners }));
+    }
+    if let Some(sides) = report.not_simple {
+        witnesses.insert("not_simple".into(), json!({ "sides": sides }));
+    }
+    if let Some(why) = report.not_convex {
+        let why = match why {
+            NotConvex::NoRegion => json!("it is open, meets itself, or lies on one line"),
+            NotConvex::NotPlanar => json!("it is not planar"),
+            NotConvex::Corner(corner) => json!({ "corner": corner }),
+        };
+        witnesses.insert("not_convex".into(), why);
+    }
+    object.insert("witnesses".into(), Value::Object(witnesses));
+    Ok(())
+}
+
 /// The object in lines of words: single values first, then what has a line each.
 fn words(object: &Map<String, Value>) -> String {
     let text = |value: &Value| match value {
@@ -240,8 +283,8 @@ fn words(object: &Map<String, Value>) -> String {
         lines.push(format!("{}: {value}", key.replace('_', " ")));
     }
     for (key, value) in object.iter().filter_map(|(key, value)| Some((key, value.as_array()?))) {
-        // The only part is what was told above.
-        if key == "parts" && value.len() == 1 {
+        // The only mesh is what was told above.
+        if key == "parts" && value.len() == 1 && value[0].get("faces").is_some() {
             continue;
         }
         for item in value {

@@ -60,7 +60,7 @@ fn twisted_ring(faces: &Faces<'_>, edges: &Edges, start: u32) -> Vec<u32> {
             let uses = edges.uses(edge_of[wedge as usize] as usize);
             let other = if uses[0] == wedge { uses[1] } else { uses[0] };
             let turned = u32::from(faces.side(wedge) == faces.side(other));
-            let reached = 2 * faces.face_of(other) + (state % 2 ^ turned);
+            let reached = 2 * faces.face_of(other) + ((state % 2) ^ turned);
             if from[reached as usize] == NONE {
                 from[reached as usize] = state;
                 queue.push(reached);
