@@ -391,6 +391,29 @@ fn equal_polygons_are_coincident_however_they_are_listed() {
     assert_eq!(found.touching.listed[3].faces, [1, 2]);
 }
 
+/// Triangles are polygons: the way of polygons, which finds pairs of faces by another list, gives the same answer.
+#[test]
+fn triangles_as_polygons_have_the_same_pairs() {
+    let mut dice = Dice(5);
+    for round in 0..300 {
+        let mesh = random_mesh(&mut dice, 3, 9, 14);
+        assert_eq!(judged_polygons(&mesh.clone().into()), judged(&mesh), "round {round}: {mesh:?}");
+    }
+}
+
+/// A pentagram's triangles lie over one another, and they are one face; a second one above shares nothing with it.
+#[test]
+fn a_polygon_is_not_compared_with_itself() {
+    let corner = |i: u32| {
+        let angle = f64::from(i % 5 * 2) * std::f64::consts::TAU / 5.0;
+        DVec3::new(angle.cos(), angle.sin(), f64::from(i / 5))
+    };
+    let star = PolyMesh::from_faces((0..10).map(corner).collect(), &[[0, 1, 2, 3, 4], [5, 6, 7, 8, 9]]).expect("stars");
+    assert!(judged_polygons(&star).is_embedded());
+    let cut = TriangulatePolygons::new().convert(&star).expect("stars").value;
+    assert!(!judged(&cut).is_embedded(), "the triangles of a star overlap");
+}
+
 /// Linked rings are apart; moved into each other they cross.
 #[test]
 fn linked_rings_do_not_cross() {
