@@ -1,7 +1,7 @@
 //! Self-intersection of meshes: against rational arithmetic on small whole coordinates, on meshes with known answers, and
 //! under maps that change nothing.
 
-use shapeloom::core::glam::DVec3;
+use shapeloom::core::glam::{DVec3, Vec3Swizzles};
 use shapeloom::core::{CancelFlag, Convert, Exec, Stop, Threads};
 use shapeloom::io::{ReadContext, detect, read};
 use shapeloom::judge::{
@@ -118,24 +118,6 @@ fn exact_maps_change_no_answer() {
     }
 }
 
-trait Swizzle {
-    fn yzx(self) -> DVec3;
-    fn zxy(self) -> DVec3;
-    fn yxz(self) -> DVec3;
-}
-
-impl Swizzle for DVec3 {
-    fn yzx(self) -> DVec3 {
-        DVec3::new(self.y, self.z, self.x)
-    }
-    fn zxy(self) -> DVec3 {
-        DVec3::new(self.z, self.x, self.y)
-    }
-    fn yxz(self) -> DVec3 {
-        DVec3::new(self.y, self.x, self.z)
-    }
-}
-
 /// Other numbers of faces and vertices, other first corners, corners of one's own, other numbers of threads.
 #[test]
 fn numbering_and_threads_change_no_answer() {
@@ -149,10 +131,10 @@ fn numbering_and_threads_change_no_answer() {
     for &face in &order {
         let turn = dice.next() as usize;
         let corners = mesh.corners(face as usize);
-        let corners = if turn % 2 == 0 { corners } else { [corners[2], corners[1], corners[0]] };
+        let corners = if turn & 1 == 0 { corners } else { [corners[2], corners[1], corners[0]] };
         let first = positions.len() as u32;
         // 0 and -0 are equal.
-        positions.extend((0..3).map(|i| corners[(i + turn) % 3] * 1.0 - DVec3::ZERO));
+        positions.extend((0..3).map(|i| corners[(i + turn) % 3]));
         triangles.push([first, first + 1, first + 2]);
     }
     let soup = TriMesh::try_new(positions.iter().map(|&p| -p).collect(), triangles).expect("indices in range");
@@ -194,7 +176,8 @@ fn soup(triangles: &[[[f64; 3]; 3]]) -> TriMesh {
 #[test]
 fn pairs_drawn_by_hand_have_their_kinds() {
     let floor = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
-    let cases: &[(&str, [[f64; 3]; 3], Option<PairKind>)] = &[
+    type Case = (&'static str, [[f64; 3]; 3], Option<PairKind>);
+    let cases: &[Case] = &[
         ("a spike through the floor", [[1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [2.0, 1.0, 2.0]], Some(PairKind::Crossing)),
         (
             "a spike that stands on it",
@@ -389,6 +372,29 @@ fn equal_polygons_are_coincident_however_they_are_listed() {
     let found = judged_polygons(&PolyMesh::from_faces(square, &faces).expect("squares"));
     assert_eq!(counts(&found), [0, 0, 0, 0, 6, 0, 0]);
     assert_eq!(found.touching.listed[3].faces, [1, 2]);
+}
+
+/// Triangles are polygons: the way of polygons, which finds pairs of faces by another list, gives the same answer.
+#[test]
+fn triangles_as_polygons_have_the_same_pairs() {
+    let mut dice = Dice(5);
+    for round in 0..300 {
+        let mesh = random_mesh(&mut dice, 3, 9, 14);
+        assert_eq!(judged_polygons(&mesh.clone().into()), judged(&mesh), "round {round}: {mesh:?}");
+    }
+}
+
+/// A pentagram's triangles lie over one another, and they are one face; a second one above shares nothing with it.
+#[test]
+fn a_polygon_is_not_compared_with_itself() {
+    let corner = |i: u32| {
+        let angle = f64::from(i % 5 * 2) * std::f64::consts::TAU / 5.0;
+        DVec3::new(angle.cos(), angle.sin(), f64::from(i / 5))
+    };
+    let star = PolyMesh::from_faces((0..10).map(corner).collect(), &[[0, 1, 2, 3, 4], [5, 6, 7, 8, 9]]).expect("stars");
+    assert!(judged_polygons(&star).is_embedded());
+    let cut = TriangulatePolygons::new().convert(&star).expect("stars").value;
+    assert!(!judged(&cut).is_embedded(), "the triangles of a star overlap");
 }
 
 /// Linked rings are apart; moved into each other they cross.
