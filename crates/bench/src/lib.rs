@@ -6,7 +6,10 @@
 mod files;
 mod measure;
 mod table;
+
+mod surface_queries;
 mod tessellate;
+mod winding;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -50,11 +53,15 @@ pub enum Task {
     Read,
     /// The same mesh to every format, in memory.
     Write,
+    /// Winding numbers of blob_1m.ply at points near it (qry_surface.f32) and in its box (qry_box.f32, every tenth).
+    Winding,
+    /// Signed distances to the same mesh at the same points.
+    SignedDistance,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 3] = [Self::Tessellate, Self::Read, Self::Write];
+    pub const ALL: [Self; 5] = [Self::Tessellate, Self::Read, Self::Write, Self::Winding, Self::SignedDistance];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -62,6 +69,8 @@ impl Task {
             Self::Tessellate => "tessellate",
             Self::Read => "read",
             Self::Write => "write",
+            Self::Winding => "winding",
+            Self::SignedDistance => "signed-distance",
         }
     }
 }
@@ -72,6 +81,9 @@ impl Task {
         let extension = input.rsplit('.').next().unwrap_or_default();
         match self {
             Self::Read => format!("m.read_1m_{extension}"),
+            // Peers measure both under one name.
+            Self::Winding | Self::SignedDistance if input.contains("qry_surface") => "j.signed_near_1m".to_owned(),
+            Self::Winding | Self::SignedDistance => "j.signed_box_100k".to_owned(),
             Self::Tessellate | Self::Write => String::new(),
         }
     }
@@ -109,6 +121,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
         Task::Read => files::read_files(&setting),
         Task::Write => files::write_files(&setting),
+        Task::Winding => winding::run(&setting),
+        Task::SignedDistance => winding::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

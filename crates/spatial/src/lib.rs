@@ -28,6 +28,8 @@ mod stack;
 mod triangle_bvh;
 mod triangle_point;
 mod triangle_ray;
+mod winding;
 
 pub use error::BvhError;
 pub use triangle_bvh::TriangleBvh;
+pub use winding::{WindingNumber, WindingTree, generalized_winding_number};
