@@ -35,3 +35,4 @@ mod same_bits;
 mod shapes;
 mod support;
 mod verification;
+mod winding;

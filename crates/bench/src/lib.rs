@@ -5,9 +5,9 @@
 
 mod files;
 mod measure;
-mod table;
-
+mod signed_distance;
 mod surface_queries;
+mod table;
 mod tessellate;
 mod winding;
 
@@ -122,7 +122,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Read => files::read_files(&setting),
         Task::Write => files::write_files(&setting),
         Task::Winding => winding::run(&setting),
-        Task::SignedDistance => winding::run(&setting),
+        Task::SignedDistance => signed_distance::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

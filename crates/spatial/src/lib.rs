@@ -17,6 +17,7 @@
 //! # Ok::<(), shapeloom_spatial::BvhError>(())
 //! ```
 
+mod closed;
 mod closest_point;
 mod equal_triangles;
 mod error;
@@ -24,6 +25,7 @@ mod error;
 mod fixtures;
 mod hierarchy;
 mod rays;
+mod signed_distance;
 mod stack;
 mod triangle_bvh;
 mod triangle_point;
@@ -31,5 +33,6 @@ mod triangle_ray;
 mod winding;
 
 pub use error::BvhError;
+pub use signed_distance::{InsideRule, SignedClosest, SignedDistance};
 pub use triangle_bvh::TriangleBvh;
 pub use winding::{WindingNumber, WindingTree, generalized_winding_number};

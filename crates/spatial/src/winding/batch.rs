@@ -20,17 +20,18 @@ impl WindingTree {
     /// # Panics
     /// When the slices differ in length.
     pub fn winding_numbers(&self, queries: &[DVec3], out: &mut [f64], exec: &Exec) -> Result<(), BvhError> {
-        along_curve(&self.units, queries, out, exec, |query| self.winding_number(query))
+        along_curve(&self.units, queries, out, exec, |query, _| self.winding_number(query))
     }
 }
 
-/// Fills `out` with what `answer` says of each query, in parallel and in the order of a Morton curve.
+/// Fills `out` with what `answer` says of each query, in parallel and in the order of a Morton curve. It is also told the
+/// queries before and their answers, the latest last: most often near ones, which must change no bit of the answer.
 pub(crate) fn along_curve<T: Copy + Default + Send>(
     units: &Units,
     queries: &[DVec3],
     out: &mut [T],
     exec: &Exec,
-    answer: impl Fn(DVec3) -> T + Sync,
+    answer: impl Fn(DVec3, &[(DVec3, T)]) -> T + Sync,
 ) -> Result<(), BvhError> {
     assert_eq!(queries.len(), out.len(), "slices of one length");
     let section = SECTION.min(queries.len());
@@ -48,8 +49,11 @@ pub(crate) fn along_curve<T: Copy + Default + Send>(
         order.sort_unstable();
         let order = &*order;
         parallel::fill_chunks(exec, answers, 256, |first, part| {
+            let mut before = Vec::with_capacity(part.len());
             for (&key, found) in order[first..].iter().zip(part) {
-                *found = answer(queries[key as u32 as usize]);
+                let query = queries[key as u32 as usize];
+                *found = answer(query, &before);
+                before.push((query, *found));
             }
             Ok::<_, BvhError>(())
         })?;
@@ -90,10 +94,11 @@ mod tests {
     #[test]
     fn answers_come_back_in_order() {
         let queries: Vec<DVec3> = (0..1000).map(|i| DVec3::splat(f64::from(i * 7919 % 1000) / 500.0 - 1.0)).collect();
-        let units = Units { unit: 1.0, per_unit: 1.0, center: DVec3::ZERO };
+        let units = Units { per_unit: 1.0, center: DVec3::ZERO };
         let mut out = vec![0.0; 1000];
-        along_curve(&units, &queries, &mut out, &Exec::default(), |query| query.x).unwrap();
+        along_curve(&units, &queries, &mut out, &Exec::default(), |query, _| query.x).unwrap();
         assert!(queries.iter().zip(&out).all(|(query, &x)| query.x == x));
-        assert!(along_curve(&units, &queries, &mut out, &Exec::default().with_memory(1000), |query| query.x).is_err());
+        let small = Exec::default().with_memory(1000);
+        assert!(along_curve(&units, &queries, &mut out, &small, |query, _| query.x).is_err());
     }
 }

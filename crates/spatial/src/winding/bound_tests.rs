@@ -49,7 +49,10 @@ fn moments_and_radii_of_merged_clusters_are_those_of_their_triangles() {
         let triangles = clusters(&mut draws, kind);
         let (direct, merged) = (Cluster::of_triangles(&triangles), merged(&triangles));
         assert!((direct.center - merged.center).length() < 1e-6);
-        for (a, b) in [(direct.quadrupole().to_vec(), merged.quadrupole().to_vec()), (direct.octupole().to_vec(), merged.octupole().to_vec())] {
+        for (a, b) in [
+            (direct.quadrupole().to_vec(), merged.quadrupole().to_vec()),
+            (direct.octupole().to_vec(), merged.octupole().to_vec()),
+        ] {
             assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-5 * (1.0 + direct.area)), "{kind}: {a:?} {b:?}");
         }
         assert!((direct.square - merged.square).abs() < 1e-5 * direct.square);
@@ -142,7 +145,9 @@ fn no_tree_is_wrong_by_more_than_its_bound() {
         center + draws.point() * 0.02
     });
     let (mut checks, mut used) = (0, 0.0);
-    for (positions, triangles) in [soup, heap, bumpy_ball(24, DVec3::ZERO, 1.0, 0.2), bumpy_ball(9, DVec3::ONE, 1.0, 0.9)] {
+    for (positions, triangles) in
+        [soup, heap, bumpy_ball(24, DVec3::ZERO, 1.0, 0.2), bumpy_ball(9, DVec3::ONE, 1.0, 0.9)]
+    {
         for offset in [DVec3::ZERO, DVec3::new(5e6, -3e6, 1e6)] {
             let positions: Vec<DVec3> = positions.iter().map(|&p| p + offset).collect();
             let tree = WindingTree::build(&positions, &triangles, &exec).unwrap();

@@ -11,7 +11,7 @@ use super::tree::WindingTree;
 use super::walk::WAITING;
 
 /// The share of the tolerance that one cluster may use up at first. About as many are left whole around a query.
-const FIRST_SHARE: f64 = 1.0 / 64.0;
+const FIRST_SHARE: f64 = 1.0 / 40.0;
 /// After so many walks that were not good enough every triangle is visited.
 const WALKS: u32 = 6;
 

@@ -30,7 +30,8 @@ impl WindingTree {
         let bounds = checked_bounds(positions, triangles, exec)?;
         let units = Units::new(&bounds);
         exec.progress(0.1);
-        let scaled = |triangle: u32| triangles[triangle as usize].map(|corner| positions[corner as usize] * units.per_unit);
+        let scaled =
+            |triangle: u32| triangles[triangle as usize].map(|corner| positions[corner as usize] * units.per_unit);
         let mut items = vec![Item { place: [0; 3], element: 0 }; count];
         parallel::fill_chunks(exec, &mut items, parallel::CHUNK, |first, part| {
             for (element, item) in (first as u32..).zip(part) {

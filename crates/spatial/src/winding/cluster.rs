@@ -186,7 +186,8 @@ impl Cluster {
     pub fn octupole(&self) -> [f64; 7] {
         let [xxx, yyy, zzz, xxy, xxz, yyx, yyz, zzx, zzy, xyz] = self.second;
         // Entries of the symmetric tensor are a third of the mixed coefficients.
-        let fifth = [xxx + (yyx + zzx) / 3.0, yyy + (xxy + zzy) / 3.0, zzz + (xxz + yyz) / 3.0].map(|trace| trace / 5.0);
+        let fifth =
+            [xxx + (yyx + zzx) / 3.0, yyy + (xxy + zzy) / 3.0, zzz + (xxz + yyz) / 3.0].map(|trace| trace / 5.0);
         let [x, y, z] = fifth;
         [yyx / 3.0 - x, zzx / 3.0 - x, xxy / 3.0 - y, zzy / 3.0 - y, xxz / 3.0 - z, yyz / 3.0 - z, xyz]
             .map(|o| 15.0 * o)

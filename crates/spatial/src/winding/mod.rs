@@ -22,3 +22,4 @@ mod tests;
 pub use reference::{WindingNumber, generalized_winding_number};
 pub use tree::WindingTree;
 
+pub(crate) use batch::along_curve;

@@ -11,7 +11,6 @@ use crate::BvhError;
 /// 1: nothing overflows whatever the model's unit is. Local units are these about the centre.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units {
-    pub unit: f64,
     pub per_unit: f64,
     /// In scaled units.
     pub center: DVec3,
@@ -26,7 +25,7 @@ impl Units {
         let size = if size > 0.0 { size.clamp(2f64.powi(-1000), 2f64.powi(1000)) } else { 1.0 };
         // Clearing the fraction leaves the power of two.
         let unit = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
-        Self { unit, per_unit: 1.0 / unit, center: center / unit }
+        Self { per_unit: 1.0 / unit, center: center / unit }
     }
 }
 

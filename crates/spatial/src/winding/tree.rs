@@ -100,6 +100,10 @@ impl WindingTree {
         WindingNumber { value: sum.total(), bound: (bound + sum.error()) * (1.0 + 1e-6) }
     }
 
+    pub(crate) fn units(&self) -> &Units {
+        &self.units
+    }
+
     /// The query in scaled and in local units, or the answer where it is too far for them.
     fn place(&self, query: DVec3) -> Result<(DVec3, DVec3), WindingNumber> {
         if !query.is_finite() {
