@@ -17,14 +17,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let torus = Torus { segments: 96, sides: 48, ..Torus::new() }.mesh(&exec)?.value;
     let torus = TriangulatePolygons::new().convert(&torus)?.value;
 
-    // A third of the faces missing in patches, and some that are left flipped.
+    // Patches of faces are missing, others are flipped.
     let patch = |p: DVec3| (7.0 * p.x).sin() * (6.0 * p.y).sin() + 0.5 * (11.0 * p.z + 4.0 * p.x).sin();
     let mut triangles = Vec::new();
     for (index, &[a, b, c]) in torus.triangles().iter().enumerate() {
         let [p, q, r] = torus.corners(index);
         match patch((p + q + r) / 3.0) {
-            hole if hole > 0.45 => {}
-            flip if flip < -0.75 => triangles.push([a, c, b]),
+            hole if hole > 0.8 => {}
+            flip if flip < -1.1 => triangles.push([a, c, b]),
             _ => triangles.push([a, b, c]),
         }
     }

@@ -42,7 +42,7 @@ pub(crate) fn beyond_horizon(triangles: usize) -> WindingNumber {
 /// an edge or corner. A query that is not finite has the value NaN.
 ///
 /// The bound holds every rounding error: about 1e-15 a triangle, growing with the size of a triangle over the query's
-/// distance to its border. Cost: O(n), about 50 ns a triangle, in one thread.
+/// distance to its border. Cost: O(n), some tens of nanoseconds a triangle.
 ///
 /// # Errors
 /// An index out of range, a corner that is not finite, more than `u32::MAX - 1` triangles, or the reason to stop.
