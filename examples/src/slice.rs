@@ -28,8 +28,8 @@ impl Slice {
         (0..rows * self.columns).map(|i| (self.from + place(i) * self.side()).extend(self.height)).collect()
     }
 
-    /// The squares in as many colours, one surface each: `shade` says where a number lies between warm (0), pale (1/2) and
-    /// blue (1).
+    /// The squares in as many colours, one surface each: `shade` says where a number lies between warm (0), pale (1/2)
+    /// and blue (1).
     pub fn colored(&self, numbers: &[f64], shade: impl Fn(f64) -> f64, colors: usize) -> Vec<SceneMesh> {
         let mut meshes: Vec<SceneMesh> = (0..colors)
             .map(|i| {

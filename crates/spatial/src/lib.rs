@@ -2,7 +2,7 @@
 //!
 //! They know no mesh type: a structure is built from positions and index triples, keeps the copies it needs, and answers
 //! through the capabilities of the foundation, [`Rays`](shapeloom_core::Rays) and
-//! [`ClosestPoint`](shapeloom_core::ClosestPoint). [`WindingTree`] tells inside from outside, and [`SignedDistance`] is a
+//! [`ClosestPoint`](shapeloom_core::ClosestPoint). [`WindingTree`] tells inside from outside; [`SignedDistance`] is a
 //! [`Field`](shapeloom_core::Field).
 //!
 //! ```

@@ -27,8 +27,8 @@ impl Field for SignedDistance {
         }
     }
 
-    /// The unit vector from the closest point, turned around inside; on a face the normal that looks outside. Zero where
-    /// there is none: on edges and corners, on sheets that have the same on both sides, without triangles.
+    /// The unit vector from the closest point, turned around inside; on a face the normal that looks outside. Zero
+    /// where there is none: on edges and corners, on sheets that have the same on both sides, without triangles.
     fn gradient(&self, point: DVec3) -> DVec3 {
         let Some(found) = self.signed_closest(point) else {
             return DVec3::ZERO;

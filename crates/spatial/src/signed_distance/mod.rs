@@ -17,7 +17,8 @@ use crate::closed::is_closed;
 use crate::winding::along_curve;
 use crate::{BvhError, TriangleBvh, WindingTree};
 
-/// How many of the queries before may tell the side: looking costs a few nanoseconds each, a winding number microseconds.
+/// How many of the queries before may tell the side: looking costs a few nanoseconds each, a winding number
+/// microseconds.
 const RECENT: usize = 32;
 
 /// The closest point of a shape to a query, and on which side the query is.
@@ -31,16 +32,17 @@ pub struct SignedClosest {
 
 /// The signed distance to triangles: the distance to the closest point, negative inside.
 ///
-/// Inside is what the generalised winding number says, so meshes with holes, flipped or duplicate faces and soups have an
-/// inside too; [`InsideRule`] says which winding numbers are inside. Where the mesh is closed (see
+/// Inside is what the generalised winding number says, so meshes with holes, flipped or duplicate faces and soups have
+/// an inside too; [`InsideRule`] says which winding numbers are inside. Where the mesh is closed (see
 /// [`SignedDistance::is_closed`]) the sign is right: a winding number with a proven bound decides it, and exact
-/// predicates the side of the nearest triangles. Only within about 1e-13 of the shape's size from an edge can rounding leave it
-/// open. Where the mesh is not closed, the winding number passes 1/2 also away from the surface, and the sign jumps there.
+/// predicates the side of the nearest triangles. Only within about 1e-13 of the shape's size from an edge can rounding
+/// leave it open. Where the mesh is not closed, the winding number passes 1/2 also away from the surface, and the sign
+/// jumps there.
 ///
 /// It is a [`Field`](shapeloom_core::Field): on a closed mesh a true distance with Lipschitz constant 1.
 ///
-/// Memory: about 400 bytes a triangle, reserved as long as it lives. Cost of a query: a closest point and a few microseconds
-/// for the sign.
+/// Memory: about 400 bytes a triangle, reserved as long as it lives. Cost of a query: a closest point and a few
+/// microseconds for the sign.
 pub struct SignedDistance {
     bvh: TriangleBvh,
     winding: WindingTree,
@@ -89,9 +91,9 @@ impl SignedDistance {
         self.rule
     }
 
-    /// Whether every edge is passed as often one way as the other, equal positions counting as one: then winding numbers
-    /// are whole numbers off the surface and the sign changes there only. Meshes that are not oriented alike, such as a
-    /// Klein bottle, are not closed in this sense.
+    /// Whether every edge is passed as often one way as the other, equal positions counting as one: then winding
+    /// numbers are whole numbers off the surface and the sign changes there only. Meshes that are not oriented alike,
+    /// such as a Klein bottle, are not closed in this sense.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -166,9 +168,9 @@ impl SignedDistance {
         if query.is_finite() { f64::INFINITY } else { f64::NAN }
     }
 
-    /// The answer, found sooner with those of points nearby, the latest last: the distance is at most another's and the way
-    /// between them; and where the mesh is closed and the balls around two points that meet no triangle overlap, both points are
-    /// on one side.
+    /// The answer, found sooner with those of points nearby, the latest last: the distance is at most another's and the
+    /// way between them; and where the mesh is closed and the balls around two points that meet no triangle overlap,
+    /// both points are on one side.
     fn beside(&self, query: DVec3, before: &[(DVec3, f64)]) -> Option<SignedClosest> {
         let slack = self.slack(query);
         let near = before.last().and_then(|&(place, distance)| {

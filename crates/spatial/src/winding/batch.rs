@@ -11,8 +11,8 @@ use crate::BvhError;
 const SECTION: usize = 1 << 22;
 
 impl WindingTree {
-    /// [`WindingTree::winding_number`] of many points, in parallel, with the same bits. Queries are answered in an order
-    /// of their own, along a Morton curve; `out` has the given one.
+    /// [`WindingTree::winding_number`] of many points, in parallel, with the same bits. Queries are answered in an
+    /// order of their own, along a Morton curve; `out` has the given one.
     ///
     /// # Errors
     /// Too little memory in the budget (16 bytes a query, at most 64 MiB), or the reason to stop.
@@ -24,8 +24,8 @@ impl WindingTree {
     }
 }
 
-/// Fills `out` with what `answer` says of each query, in parallel and in the order of a Morton curve. It is also told the
-/// queries before and their answers, the latest last: most often near ones, which must change no bit of the answer.
+/// Fills `out` with what `answer` says of each query, in parallel and in the order of a Morton curve. It is also told
+/// the queries before and their answers, the latest last: most often near ones, which must change no bit of the answer.
 pub(crate) fn along_curve<T: Copy + Default + Send>(
     units: &Units,
     queries: &[DVec3],

@@ -62,8 +62,8 @@ fn moments_and_radii_of_merged_clusters_are_those_of_their_triangles() {
     }
 }
 
-/// Every cluster, distance and direction: the error is within the bound. Prints nothing; the least ratio is asserted, so
-/// that the bound stays as tight as the page says.
+/// Every cluster, distance and direction: the error is within the bound. Prints nothing; the least ratio is asserted,
+/// so that the bound stays as tight as the page says.
 #[test]
 fn no_cluster_is_wrong_by_more_than_its_bound() {
     let mut draws = Draws::new(5);

@@ -18,8 +18,8 @@ const WALKS: u32 = 6;
 /// The winding number of a query given in scaled and in local units.
 ///
 /// One threshold holds for all clusters: for a given sum of bounds that opens about the fewest. A walk whose sum is too
-/// large is done again with a smaller threshold; the sum falls about with its power 3/5 (a cluster's bound falls with the
-/// fifth power of its distance in radii, the sum with the third).
+/// large is done again with a smaller threshold; the sum falls about with its power 3/5 (a cluster's bound falls with
+/// the fifth power of its distance in radii, the sum with the third).
 pub(super) fn winding_number(tree: &WindingTree, scaled: [f64; 3], local: [f64; 3], tolerance: f64) -> WindingNumber {
     let tolerance = if tolerance > 0.0 { tolerance } else { 0.0 };
     let mut threshold = tolerance * FIRST_SHARE;

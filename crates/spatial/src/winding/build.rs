@@ -14,7 +14,8 @@ use crate::BvhError;
 impl WindingTree {
     /// Builds the tree over `triangles`, index triples into `positions`.
     ///
-    /// Positions that no triangle names may be anything. Cost: O(n log n), a quarter of a second for a million triangles.
+    /// Positions that no triangle names may be anything. Cost: O(n log n), a quarter of a second for a million
+    /// triangles.
     ///
     /// # Errors
     /// An index out of range, a corner that is not finite, more than `u32::MAX - 1` triangles, too little memory in the

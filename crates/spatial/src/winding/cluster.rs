@@ -5,9 +5,9 @@ use shapeloom_core::Aabb;
 
 /// Moments of a cluster about its centre, in local units.
 ///
-/// With `d` the place relative to the centre and `n` the unit normal, integrated over the triangles: `dipole[v] = ∫ n·v`,
-/// `first[v, v] = ∫ (n·v)(d·v)`, `second[v, v, v] = ½ ∫ (n·v)(d·v)²`, kept as homogeneous polynomials in `v`, which is
-/// all that the winding number asks of them.
+/// With `d` the place relative to the centre and `n` the unit normal, integrated over the triangles: `dipole[v] = ∫
+/// n·v`, `first[v, v] = ∫ (n·v)(d·v)`, `second[v, v, v] = ½ ∫ (n·v)(d·v)²`, kept as homogeneous polynomials in `v`,
+/// which is all that the winding number asks of them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster {
     /// A point whose coordinates are `f32` numbers.

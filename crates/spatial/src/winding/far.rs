@@ -3,9 +3,9 @@
 use super::cluster::Cluster;
 use super::near::WIDTH;
 
-/// Eight clusters by lane, in single precision: centres exactly, the rest rounded, bounds upward. Moments are divided by
-/// the radius and its square, so that all have the size of the area. Lanes without a cluster hold one without area far
-/// away.
+/// Eight clusters by lane, in single precision: centres exactly, the rest rounded, bounds upward. Moments are divided
+/// by the radius and its square, so that all have the size of the area. Lanes without a cluster hold one without area
+/// far away.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub center: [[f32; WIDTH]; 3],

@@ -16,7 +16,8 @@ use crate::BvhError;
 pub struct WindingNumber {
     /// The winding number as computed.
     pub value: f64,
-    /// The largest distance to the true one, proven. Infinite where nothing is known, as for queries that are not finite.
+    /// The largest distance to the true one, proven. Infinite where nothing is known, as for queries that are not
+    /// finite.
     pub bound: f64,
 }
 
@@ -37,9 +38,9 @@ pub(crate) fn beyond_horizon(triangles: usize) -> WindingNumber {
 /// summation. The reference that [`WindingTree`](super::WindingTree) is held against.
 ///
 /// Around a closed mesh it is a whole number: 1 inside and 0 outside where faces look outward. Triangles whose plane
-/// holds the query count 0, decided exactly, and so do triangles whose corners are exactly on a line. On the surface the
-/// value is therefore the mean over a small ball: 1/2 inside a face of a closed mesh, the share of the interior angle on
-/// an edge or corner. A query that is not finite has the value NaN.
+/// holds the query count 0, decided exactly, and so do triangles whose corners are exactly on a line. On the surface
+/// the value is therefore the mean over a small ball: 1/2 inside a face of a closed mesh, the share of the interior
+/// angle on an edge or corner. A query that is not finite has the value NaN.
 ///
 /// The bound holds every rounding error: about 1e-15 a triangle, growing with the size of a triangle over the query's
 /// distance to its border. Cost: O(n), some tens of nanoseconds a triangle.
@@ -83,8 +84,9 @@ pub fn generalized_winding_number(
 /// counter-clockwise side.
 ///
 /// Van Oosterom and Strackee: tan(Ω/2) = det / den. With u = 2⁻⁵³ and the corners relative to the query within u each,
-/// the determinant is wrong by at most 14 u and the denominator by 56 u of |a||b||c|, so the angle of the point (den, det)
-/// by 91 u |a||b||c| over its length. Turned into whole turns that is below 24 u; 2⁻⁴⁸ and 2⁻⁵¹ for the arctangent hold it.
+/// the determinant is wrong by at most 14 u and the denominator by 56 u of |a||b||c|, so the angle of the point (den,
+/// det) by 91 u |a||b||c| over its length. Turned into whole turns that is below 24 u; 2⁻⁴⁸ and 2⁻⁵¹ for the arctangent
+/// hold it.
 pub(crate) fn turns_of(corners: &[DVec3; 3], query: DVec3) -> (f64, f64) {
     let [a, b, c] = corners.map(|corner| corner - query);
     let (la, lb, lc) = (a.length(), b.length(), c.length());
