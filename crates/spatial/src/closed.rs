@@ -7,9 +7,9 @@ use crate::BvhError;
 
 /// Whether every edge is passed as often one way as the other, corners at equal positions counting as one: whether the
 /// boundary of the triangles, as a chain, is zero. Exactly then the winding number is a whole number everywhere off the
-/// surface. Indices must be in range. O(n log n); 24 bytes a triangle and 8 a position are reserved meanwhile.
+/// surface. Indices must be in range. O(n log n); 48 bytes a triangle and 8 a position are reserved meanwhile.
 pub(crate) fn is_closed(positions: &[DVec3], triangles: &[[u32; 3]], exec: &Exec) -> Result<bool, BvhError> {
-    let _memory = exec.reserve_elements(triangles.len() as u64, 3 * size_of::<u64>())?;
+    let _memory = exec.reserve_elements(triangles.len() as u64, 6 * size_of::<u64>())?;
     if edges_cancel(triangles, |corner| corner, exec)? {
         return Ok(true);
     }

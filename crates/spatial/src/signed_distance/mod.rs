@@ -41,7 +41,7 @@ pub struct SignedClosest {
 ///
 /// It is a [`Field`](shapeloom_core::Field): on a closed mesh a true distance with Lipschitz constant 1.
 ///
-/// Memory: about 400 bytes a triangle, reserved as long as it lives. Cost of a query: a closest point and a few
+/// Memory: about 250 bytes a triangle, reserved as long as it lives. Cost of a query: a closest point and a few
 /// microseconds for the sign.
 pub struct SignedDistance {
     bvh: TriangleBvh,

@@ -45,7 +45,7 @@ impl WindingTree {
         })?;
         pack(&mut items, &exec.part(0.2, 0.6))?;
         exec.progress(0.6);
-        let _clusters = exec.reserve_elements(eights + 16, size_of::<Cluster>() * 8 / 7)?;
+        let _clusters = exec.reserve_elements(eights + 16, 2 * size_of::<Cluster>())?;
         let eighths = items.len().div_ceil(WIDTH);
         let members = |block: usize| &items[block * WIDTH..(block * WIDTH + WIDTH).min(items.len())];
         let mut blocks = vec![Block { corners: [[[0.0; WIDTH]; 3]; 3] }; eighths];

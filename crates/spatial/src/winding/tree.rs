@@ -21,7 +21,7 @@ use super::{bounded, walk};
 /// mean of both sides, as [`generalized_winding_number`](super::generalized_winding_number) says. Triangles without
 /// area count nothing.
 ///
-/// Memory: about 110 bytes a triangle, reserved as long as the tree lives; about 70 more while it is built. The same
+/// Memory: about 90 bytes a triangle, reserved as long as the tree lives; about 100 more while it is built. The same
 /// bits come out for any number of threads, on every machine, in batches and alone.
 pub struct WindingTree {
     /// Triangles in eights, in scaled units about the origin.
