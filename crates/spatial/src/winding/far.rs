@@ -58,6 +58,7 @@ impl Node {
     ///
     /// The query is given in two single-precision parts, so that differences to near centres keep all their digits.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // A lane runs through many arrays.
     pub fn far(&self, high: [f32; 3], low: [f32; 3], accuracy_squared: f32) -> ([f32; WIDTH], u32) {
         let mut angles = [0.0; WIDTH];
         let mut near = 0;
@@ -91,6 +92,7 @@ impl Node {
     /// The same in double precision, with bounds of the solid angles' truncation and rounding, for the clusters whose
     /// truncation is at most `threshold`. `reach` is the largest coordinate of the query.
     #[inline(always)]
+    #[allow(clippy::needless_range_loop)] // A lane runs through many arrays.
     pub fn far_within(&self, query: [f64; 3], reach: f64, threshold: f64) -> ([[f64; WIDTH]; 3], u32) {
         let mut out = [[0.0; WIDTH]; 3];
         let mut near = 0;

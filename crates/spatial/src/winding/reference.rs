@@ -26,7 +26,12 @@ impl WindingNumber {
 }
 
 /// How far the queries may be from the shape, in its sizes; beyond, winding numbers are below 1e-16 and count as 0.
-pub(crate) const HORIZON: f64 = (1u64 << 40) as f64;
+const HORIZON: f64 = (1u64 << 40) as f64;
+
+/// Whether a query in local units is too far, or overflowed on the way to them.
+pub(crate) fn beyond(local: DVec3) -> bool {
+    !local.is_finite() || local.abs().max_element() >= HORIZON
+}
 
 /// The bound of an answer beyond the horizon: as if every triangle were as large as the shape and faced the query.
 pub(crate) fn beyond_horizon(triangles: usize) -> WindingNumber {
@@ -59,7 +64,7 @@ pub fn generalized_winding_number(
     }
     let units = Units::new(&bounds);
     let query = query * units.per_unit;
-    if !((query - units.center).abs().max_element() < HORIZON) {
+    if beyond(query - units.center) {
         return Ok(beyond_horizon(triangles.len()));
     }
     let parts = parallel::map_chunks(exec, triangles.len(), 1 << 13, |range| {

@@ -7,7 +7,7 @@ use shapeloom_core::{Aabb, Reservation};
 
 use super::far::Node;
 use super::near::Block;
-use super::reference::{HORIZON, WindingNumber, beyond_horizon};
+use super::reference::{WindingNumber, beyond, beyond_horizon};
 use super::scaled_input::Units;
 use super::sum::Sum;
 use super::{bounded, walk};
@@ -112,7 +112,7 @@ impl WindingTree {
         }
         let scaled = query * self.units.per_unit;
         let local = scaled - self.units.center;
-        if !(local.abs().max_element() < HORIZON) {
+        if beyond(local) {
             return Err(beyond_horizon(self.triangles));
         }
         Ok((scaled, local))
