@@ -2,8 +2,10 @@
 //! folder.
 
 mod measure;
+mod slice;
 
 pub use measure::{measure_patch, triangles_of_patch};
+pub use slice::Slice;
 
 use std::error::Error;
 use std::path::PathBuf;

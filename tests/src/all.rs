@@ -39,3 +39,4 @@ mod support;
 mod topology;
 mod triangle_pairs;
 mod verification;
+mod winding;

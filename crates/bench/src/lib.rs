@@ -6,9 +6,12 @@
 mod files;
 mod measure;
 mod self_intersection;
+mod signed_distance;
+mod surface_queries;
 mod table;
 mod tessellate;
 mod topology;
+mod winding;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -45,6 +48,7 @@ struct Arguments {
 
 /// What can be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
 pub enum Task {
     /// The teapot's patches to triangles.
     Tessellate,
@@ -55,23 +59,22 @@ pub enum Task {
     /// The topology report of the same mesh (PLY alone).
     Topology,
     /// All faces of the same mesh that meet each other, exactly.
-    #[value(name = "self_intersection", alias = "self-intersection")]
     SelfIntersection,
+    /// Winding numbers of blob_1m.ply at points near it (qry_surface.f32) and in its box (qry_box.f32, every tenth).
+    Winding,
+    /// Signed distances to the same mesh at the same points.
+    SignedDistance,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 5] = [Self::Tessellate, Self::Read, Self::Write, Self::Topology, Self::SelfIntersection];
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
+    }
 
     /// The name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Tessellate => "tessellate",
-            Self::Read => "read",
-            Self::Write => "write",
-            Self::Topology => "topology",
-            Self::SelfIntersection => "self_intersection",
-        }
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }
 
@@ -83,6 +86,9 @@ impl Task {
             Self::Read => format!("m.read_1m_{extension}"),
             Self::SelfIntersection => "j.self_intersection".into(),
             Self::Topology => "p.topology".into(),
+            // Peers measure both under one name.
+            Self::Winding | Self::SignedDistance if input.contains("qry_surface") => "j.signed_near_1m".to_owned(),
+            Self::Winding | Self::SignedDistance => "j.signed_box_100k".to_owned(),
             Self::Tessellate | Self::Write => String::new(),
         }
     }
@@ -122,6 +128,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Write => files::write_files(&setting),
         Task::Topology => topology::run(&setting).map(|outcome| vec![outcome]),
         Task::SelfIntersection => self_intersection::run(&setting).map(|outcome| vec![outcome]),
+        Task::Winding => winding::run(&setting),
+        Task::SignedDistance => signed_distance::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

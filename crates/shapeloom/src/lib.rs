@@ -49,7 +49,7 @@
 //! | module | what is there |
 //! |---|---|
 //! | [`core`] | boxes, affine maps, cameras; conversions, reports, options, execution, errors; the capability traits |
-//! | [`spatial`] | a bounding volume hierarchy with watertight rays and closest points |
+//! | [`spatial`] | a bounding volume hierarchy with watertight rays and closest points, winding numbers, signed distances |
 //! | [`mesh`] | triangle and polygon meshes, polylines, height fields, point clouds, attributes, primitives |
 //! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |

@@ -2,7 +2,8 @@
 //!
 //! They know no mesh type: a structure is built from positions and index triples, keeps the copies it needs, and answers
 //! through the capabilities of the foundation, [`Rays`](shapeloom_core::Rays) and
-//! [`ClosestPoint`](shapeloom_core::ClosestPoint).
+//! [`ClosestPoint`](shapeloom_core::ClosestPoint). [`WindingTree`] tells inside from outside; [`SignedDistance`] is a
+//! [`Field`](shapeloom_core::Field).
 //!
 //! ```
 //! use shapeloom_core::glam::DVec3;
@@ -18,6 +19,7 @@
 //! ```
 
 mod box_pairs;
+mod closed;
 mod closest_point;
 mod equal_triangles;
 mod error;
@@ -25,12 +27,16 @@ mod error;
 mod fixtures;
 mod hierarchy;
 mod rays;
+mod signed_distance;
 mod space_order;
 mod stack;
 mod triangle_bvh;
 mod triangle_point;
 mod triangle_ray;
+mod winding;
 
 pub use box_pairs::BoxPairs;
 pub use error::BvhError;
+pub use signed_distance::{InsideRule, SignedClosest, SignedDistance};
 pub use triangle_bvh::TriangleBvh;
+pub use winding::{WindingNumber, WindingTree, generalized_winding_number};
