@@ -27,42 +27,49 @@ pub(super) fn meeting(points: Points, first: &Triangle, second: &Triangle) -> Op
         }
     }
     match count {
-        0 => without_corner(points, axis, a, b),
+        0 => without_corner(points, axis, first, second),
         1 => {
             let [a, b] = [(a, place[0]), (b, place[1])].map(|(t, i)| [t[i], t[(i + 1) % 3], t[(i + 2) % 3]]);
-            with_corner(points, axis, a, b)
+            with_corner(points, axis, [first, second], a, b)
         }
         // The places of all three corners sum to 3, so the one left over is known.
-        2 => with_side(points, axis, [a, b], [3 - places[0], 3 - places[1]]),
+        2 => with_side(points, axis, [first, second], [3 - places[0], 3 - places[1]]),
         _ => Some(PairKind::Coincident),
     }
 }
 
-fn without_corner(points: Points, axis: Axis, a: [u32; 3], b: [u32; 3]) -> Option<PairKind> {
-    let b_sides = b.map(|corner| points.side(a, corner));
+fn without_corner(points: Points, axis: Axis, first: &Triangle, second: &Triangle) -> Option<PairKind> {
+    let (a, b) = (first.corners, second.corners);
+    let b_sides = b.map(|corner| points.side_of(first, corner));
     if strictly_one(&b_sides) {
         return None;
     }
     if b_sides == [Equal; 3] {
         return in_one_plane(points, axis, a, b, false);
     }
-    let a_sides = a.map(|corner| points.side(b, corner));
+    let a_sides = a.map(|corner| points.side_of(second, corner));
     if strictly_one(&a_sides) {
         return None;
     }
     section::apart_or_meeting(points, [a, b], [a_sides, b_sides])
 }
 
-/// The common corner is the first of both.
-fn with_corner(points: Points, axis: Axis, a: [u32; 3], b: [u32; 3]) -> Option<PairKind> {
-    let b_sides = [b[1], b[2]].map(|corner| points.side(a, corner));
+/// The corners of both, turned so that the common one is the first.
+fn with_corner(
+    points: Points,
+    axis: Axis,
+    [first, second]: [&Triangle; 2],
+    a: [u32; 3],
+    b: [u32; 3],
+) -> Option<PairKind> {
+    let b_sides = [b[1], b[2]].map(|corner| points.side_of(first, corner));
     if strictly_one(&b_sides) {
         return None;
     }
     if b_sides == [Equal; 2] {
         return in_one_plane(points, axis, a, b, true);
     }
-    let a_sides = [a[1], a[2]].map(|corner| points.side(b, corner));
+    let a_sides = [a[1], a[2]].map(|corner| points.side_of(second, corner));
     if strictly_one(&a_sides) {
         return None;
     }
@@ -70,10 +77,11 @@ fn with_corner(points: Points, axis: Axis, a: [u32; 3], b: [u32; 3]) -> Option<P
 }
 
 /// Triangles with a common side, and where their other corners are: in different planes they share nothing more.
-fn with_side(points: Points, axis: Axis, [a, b]: [[u32; 3]; 2], others: [usize; 2]) -> Option<PairKind> {
+fn with_side(points: Points, axis: Axis, [first, second]: [&Triangle; 2], others: [usize; 2]) -> Option<PairKind> {
+    let (a, b) = (first.corners, second.corners);
     let (other, opposite) = (a[others[0]], b[others[1]]);
     let (from, to) = (a[(others[0] + 1) % 3], a[(others[0] + 2) % 3]);
-    if points.side([from, to, other], opposite) != Equal {
+    if points.side_of(first, opposite) != Equal {
         return None;
     }
     let turns = [other, opposite].map(|corner| points.turn(axis, from, to, corner));

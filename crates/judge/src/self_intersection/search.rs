@@ -23,7 +23,7 @@ use crate::{JudgeError, Scaled};
 /// Pairs of boxes that meet are found by [`BoxPairs`] and decided one by one. Cost: about 0.7 seconds of CPU time for a
 /// million triangles of a surface. Triangles with equal corners are counted, not enumerated, so thousands of copies cost
 /// nothing; but where the boxes of n different triangles all overlap there are n²/2 pairs to decide, at two to fifteen
-/// million a second: around a vertex of valence 5000 one second, or six if all lies in a plane; in a soup of 100,000 long
+/// million a second: around a vertex of valence 5000 one second, or two if all lies flat; in a soup of 100,000 long
 /// thin triangles a quarter of an hour. `exec` stops it at any time. Memory: some 250 bytes a triangle, and 24 bytes times
 /// `limit` for each class and thread.
 ///
@@ -76,7 +76,7 @@ pub(super) fn each_meeting<T: Send>(
 ) -> Result<(), JudgeError> {
     let points = Points(positions);
     let _memory = exec.reserve_elements(corners.len() as u64, size_of::<Triangle>())?;
-    let mut triangles = vec![Triangle { corners: [0; 3], seen_along: None }; corners.len()];
+    let mut triangles = vec![Triangle { corners: [0; 3], seen_along: None, level: None }; corners.len()];
     fill_chunks(exec, &mut triangles, CHUNK, |first, part| {
         part.iter_mut().zip(&corners[first..]).for_each(|(triangle, &corners)| *triangle = points.triangle(corners));
         Ok::<_, Stop>(())

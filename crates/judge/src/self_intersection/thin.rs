@@ -68,7 +68,7 @@ fn with_area(points: Points, triangle: &Triangle, hull: Hull) -> (Common, bool) 
         (Common::Inside, &[corner]) => (Common::Along(corner, corner), false),
         (common, _) => (common, false),
     };
-    let side = |corner: u32| points.side(triangle.corners, corner);
+    let side = |corner: u32| points.side_of(triangle, corner);
     match *hull.corners() {
         [only] if side(only) == Equal => in_plane(&[only]),
         [low, high] => match (side(low), side(high)) {
