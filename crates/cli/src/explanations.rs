@@ -128,7 +128,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-check-orientation",
         "Two faces run along their common edge in the same direction, so one of them is turned over.",
     ),
-    ("W-check-overlap", "Two faces lie in one plane and have an area in common."),
+    (
+        "W-check-overlap",
+        "Two faces lie in one plane, have an area in common and look the same way, or are neighbours folded onto each other: solids that share a volume, or a fin without thickness.",
+    ),
     (
         "W-check-polygon",
         "The sides of a polygon meet elsewhere than at the corner between neighbours: it crosses, touches or folds back on itself.",

@@ -47,7 +47,11 @@ pub const RULES: [Rule; 17] = [
     Rule { code: "W-check-duplicate", wants: "no face repeats another", profiles: ALL },
     Rule { code: "W-check-polygon", wants: "no polygon meets itself", profiles: ALL },
     Rule { code: "W-check-crossing", wants: "no face passes through another", profiles: SOLID },
-    Rule { code: "W-check-overlap", wants: "no two faces overlap in a plane", profiles: &[Profile::Simulation] },
+    Rule {
+        code: "W-check-overlap",
+        wants: "no two faces overlap in a plane, looking the same way or folded along a side",
+        profiles: SOLID,
+    },
     Rule {
         code: "W-check-contact",
         wants: "faces touch in nothing but shared sides and corners",

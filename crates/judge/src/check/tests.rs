@@ -73,6 +73,9 @@ fn each_defect_has_its_finding() {
     assert_eq!(general(&duplicate), ["W-check-edge", "W-check-duplicate"]);
     let crossing = cubes(&[(DVec3::ZERO, 2.0, false), (DVec3::new(1.0, 0.5, 0.25), 2.0, false)]);
     assert_eq!(general(&crossing), ["W-check-crossing"]);
+    // Solids that share a volume, but only along planes that they have in common: no face passes through another.
+    let half = cubes(&[(DVec3::ZERO, 2.0, false), (DVec3::X, 2.0, false)]);
+    assert_eq!(general(&half), ["W-check-overlap"]);
     // Two cubes that share an edge by index, and two cones in one vertex.
     let edge = edited(|positions, triangles| {
         let more = cubes(&[(DVec3::new(1.0, 1.0, 0.0), 1.0, false)]);

@@ -1,12 +1,16 @@
 //! Everything that the judge knows of a mesh, and what it says to a purpose.
 
+use shapeloom_core::glam::{DVec2, DVec3};
+use shapeloom_core::predicates::orient2d;
 use shapeloom_core::{Exec, Findings, Place, Severity};
-use shapeloom_mesh::{Domain, NORMAL, PolyMesh};
+use shapeloom_mesh::{Domain, NORMAL, PolyMesh, newell_vector};
 
 use super::angles::{SMALLEST, slivers};
 use super::shells::shells;
 use super::{Profile, Shell};
-use crate::self_intersection::{PairList, SelfIntersections, self_intersections, self_intersections_of_polygons};
+use crate::self_intersection::{
+    FacePair, PairKind, PairList, SelfIntersections, self_intersections, self_intersections_of_polygons,
+};
 use crate::triangulated::triangulated;
 use crate::{JudgeError, Measures, MeshRef, PolygonReport, Topology};
 
@@ -19,7 +23,7 @@ pub struct Verdict {
     pub topology: Topology,
     /// Area, volume and what has none.
     pub measures: Measures,
-    /// Where the mesh meets itself; the pairs listed are the first few.
+    /// Where the mesh meets itself; of each class the first 65,536 pairs are listed.
     pub self_intersections: SelfIntersections,
     /// The closed shells.
     pub shells: Vec<Shell>,
@@ -33,6 +37,8 @@ struct Details {
     tangled: Vec<u32>,
     /// Whether there are normals.
     normals: bool,
+    /// Pairs that overlap and look the same way, or are folded onto each other.
+    alike: Vec<[u32; 2]>,
 }
 
 /// Why a mesh is no polyhedron, with a witness.
@@ -51,8 +57,10 @@ pub enum NotPolyhedron {
 }
 
 impl Verdict {
-    /// How many places of a kind are kept.
+    /// How many places of a kind are told.
     const LISTED: usize = Findings::PLACES_KEPT;
+    /// How many pairs of a kind are listed, to be looked at one by one.
+    const PAIRS: usize = 1 << 16;
 
     /// Judges a mesh for a purpose.
     ///
@@ -68,8 +76,8 @@ impl Verdict {
         let measures = Measures::of(mesh, &exec.part(0.2, 0.3))?;
         let crossings = exec.part(0.3, 0.8);
         let self_intersections = match mesh {
-            MeshRef::Triangles(mesh) => self_intersections(mesh, Self::LISTED, &crossings)?,
-            MeshRef::Polygons(mesh) => self_intersections_of_polygons(mesh, Self::LISTED, &crossings)?,
+            MeshRef::Triangles(mesh) => self_intersections(mesh, Self::PAIRS, &crossings)?,
+            MeshRef::Polygons(mesh) => self_intersections_of_polygons(mesh, Self::PAIRS, &crossings)?,
         };
         let (shells, thin, tangled) = match mesh {
             MeshRef::Triangles(mesh) => {
@@ -86,8 +94,10 @@ impl Verdict {
             MeshRef::Triangles(mesh) => mesh.attribute(domain, NORMAL).is_some(),
             MeshRef::Polygons(mesh) => mesh.attribute(domain, NORMAL).is_some(),
         });
+        let unsound = |pair: &&FacePair| pair.kind == PairKind::Folded || look_alike(mesh, pair.faces);
+        let alike = self_intersections.overlapping.listed.iter().filter(unsound).map(|pair| pair.faces).collect();
         let mut verdict = Self { findings: Findings::default(), topology, measures, self_intersections, shells };
-        verdict.findings = verdict.against(profile, &Details { thin, tangled, normals });
+        verdict.findings = verdict.against(profile, &Details { thin, tangled, normals, alike });
         exec.progress(1.0);
         Ok(verdict)
     }
@@ -95,7 +105,7 @@ impl Verdict {
     /// What is against the rules of a purpose.
     fn against(&self, profile: Profile, details: &Details) -> Findings {
         let Self { topology, measures, self_intersections, shells, .. } = self;
-        let Details { thin, tangled, normals } = details;
+        let Details { thin, tangled, normals, .. } = details;
         let mut findings = Findings::default();
         let mut rule = |code, message: &str, count: usize, places: &mut dyn Iterator<Item = Place>| {
             if profile.asks_for(code) {
@@ -146,15 +156,22 @@ impl Verdict {
         let again = &t.duplicate_faces;
         rule("W-check-duplicate", "a face repeats another", again.len(), &mut again.iter().map(pair));
         rule("W-check-polygon", "a polygon meets itself", tangled.len(), &mut tangled.iter().map(face));
-        let meeting = |list: &PairList| list.listed.iter().map(|pair| pair.faces).collect::<Vec<_>>();
+        let first = |list: &PairList| list.listed.iter().take(Self::LISTED).map(|pair| pair.faces).collect::<Vec<_>>();
         let SelfIntersections { crossing, overlapping, touching, .. } = self_intersections;
-        for (code, message, list) in [
-            ("W-check-crossing", "a face passes through another", crossing),
-            ("W-check-overlap", "two faces overlap in a plane", overlapping),
-            ("W-check-contact", "two faces touch beside shared sides and corners", touching),
-        ] {
-            rule(code, message, list.total as usize, &mut meeting(list).iter().map(pair));
-        }
+        let message = "a face passes through another";
+        rule("W-check-crossing", message, crossing.total as usize, &mut first(crossing).iter().map(pair));
+        let message = match overlapping.total > overlapping.listed.len() as u64 {
+            true => "two faces overlap in a plane, at least so often",
+            false => "two faces overlap in a plane",
+        };
+        rule("W-check-overlap", message, details.alike.len(), &mut details.alike.iter().map(pair));
+        // Faces that lie on each other and look at each other are in contact.
+        let facing = overlapping.total as usize - details.alike.len();
+        let contacts = touching.total as usize + facing;
+        let message = "two faces touch beside shared sides and corners";
+        let mut places: Vec<[u32; 2]> = first(touching);
+        places.extend(first(overlapping).into_iter().filter(|pair| !details.alike.contains(pair)).take(Self::LISTED));
+        rule("W-check-contact", message, contacts, &mut places.iter().map(pair));
         let lonely = &t.isolated_vertices;
         rule("W-check-isolated", "a vertex has no face", lonely.len(), &mut lonely.iter().map(vertex));
         let message = format!("a triangle has an angle below {SMALLEST} degree");
@@ -187,6 +204,23 @@ impl Verdict {
         let listed = [crossing, overlapping, touching].into_iter().find_map(|list| list.listed.first());
         listed.map_or(Ok(()), |pair| Err(NotPolyhedron::Meeting(pair.faces)))
     }
+}
+
+/// Whether two faces in one plane look the same way. Exact for triangles; for polygons by their Newell vectors.
+fn look_alike(mesh: MeshRef<'_>, faces: [u32; 2]) -> bool {
+    let normals = match mesh {
+        MeshRef::Triangles(mesh) => {
+            let [a, b] = faces.map(|face| mesh.corners(face as usize));
+            let turn = |corners: [DVec3; 3], [i, j]: [usize; 2]| {
+                let [a, b, c] = corners.map(|p| DVec2::new(p[i], p[j]));
+                orient2d(a, b, c)
+            };
+            let planes = [[0, 1], [1, 2], [2, 0]].into_iter();
+            return planes.map(|plane| [turn(a, plane), turn(b, plane)]).all(|[one, other]| one == other);
+        }
+        MeshRef::Polygons(mesh) => faces.map(|face| newell_vector(mesh.outline(face as usize)).normalize_or_zero()),
+    };
+    normals[0].dot(normals[1]) > 0.0
 }
 
 /// The polygons with more than three corners that are not simple, rising.
