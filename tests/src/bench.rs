@@ -20,7 +20,12 @@ fn every_task_prints_lines_of_json() {
         let code = shapeloom_bench::run(words.map(Into::into), &mut out, &mut err);
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
         let lines = String::from_utf8(out).expect("UTF-8");
-        assert_eq!(lines.lines().count(), if task == Task::Tessellate { 1 } else { 5 }, "{lines}");
+        let count = match task {
+            Task::Tessellate => 1,
+            Task::Hausdorff => 2,
+            Task::Read | Task::Write => 5,
+        };
+        assert_eq!(lines.lines().count(), count, "{lines}");
         for line in lines.lines() {
             let found: serde_json::Value = serde_json::from_str(line).expect("JSON");
             assert_eq!(found["task"], task.name());

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde_json::{Map, json};
 use shapeloom_core::{Convert, Exec};
 use shapeloom_io::{Format, ReadContext, WriteContext, detect, format_by_id, read, slurp_sized, write};
-use shapeloom_mesh::TriangulatePolygons;
+use shapeloom_mesh::{TriMesh, TriangulatePolygons};
 use shapeloom_shape::{Geometry, Shape};
 
 use crate::{Outcome, Setting, measure};
@@ -32,6 +32,19 @@ fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), String> {
     let format = detect(&bytes, Some(&name)).map_err(|error| said(&error))?;
     let shape = read(&bytes, format, &context).map_err(|error| said(&error))?.shape;
     Ok((shape, format, bytes.len() as u64))
+}
+
+/// The first mesh of a file, as triangles.
+pub(crate) fn load_triangles(path: &PathBuf) -> Result<TriMesh, String> {
+    let (shape, _, _) = load(path)?;
+    let part = shape.parts.first().ok_or_else(|| format!("{}: found no part", path.display()))?;
+    match &*part.geometry {
+        Geometry::TriMesh(mesh) => Ok(mesh.clone()),
+        Geometry::PolyMesh(mesh) => {
+            Ok(TriangulatePolygons::new().convert(mesh).map_err(|error| error.to_string())?.value)
+        }
+        other => Err(format!("{}: found a {}, expected a mesh", path.display(), other.kind())),
+    }
 }
 
 fn sizes(shape: &Shape) -> (usize, usize) {

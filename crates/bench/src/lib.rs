@@ -4,6 +4,7 @@
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
 mod files;
+mod hausdorff;
 mod measure;
 mod table;
 mod tessellate;
@@ -50,11 +51,13 @@ pub enum Task {
     Read,
     /// The same mesh to every format, in memory.
     Write,
+    /// How far meshes are apart, bounded from both sides.
+    Hausdorff,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 3] = [Self::Tessellate, Self::Read, Self::Write];
+    pub const ALL: [Self; 4] = [Self::Tessellate, Self::Read, Self::Write, Self::Hausdorff];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -62,6 +65,7 @@ impl Task {
             Self::Tessellate => "tessellate",
             Self::Read => "read",
             Self::Write => "write",
+            Self::Hausdorff => "hausdorff",
         }
     }
 }
@@ -72,7 +76,7 @@ impl Task {
         let extension = input.rsplit('.').next().unwrap_or_default();
         match self {
             Self::Read => format!("m.read_1m_{extension}"),
-            Self::Tessellate | Self::Write => String::new(),
+            Self::Tessellate | Self::Write | Self::Hausdorff => String::new(),
         }
     }
 }
@@ -109,6 +113,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
         Task::Read => files::read_files(&setting),
         Task::Write => files::write_files(&setting),
+        Task::Hausdorff => hausdorff::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

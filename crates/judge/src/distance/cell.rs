@@ -85,16 +85,17 @@ impl<'a> Search<'a> {
         Self { other, goal, farthest: None, queries: 0 }
     }
 
-    fn probe(&mut self, place: DVec3, root: u32, depth: u16) -> Probe {
-        let probe = self.other.probe(place);
-        self.note(place, root, probe, depth);
-        probe
-    }
-
-    fn note(&mut self, place: DVec3, root: u32, probe: Probe, depth: u16) {
+    /// The distance of a place in a cell.
+    fn probe(&mut self, cell: &Cell, place: DVec3) -> Probe {
+        let known = match cell.common {
+            NONE => f64::INFINITY,
+            common => distance_to_triangle(&self.other.corners(common), place),
+        };
+        let probe = self.other.probe_within(place, known);
         self.queries += 1;
-        let found = Farthest::new(place, root, probe, depth);
+        let found = Farthest::new(place, cell.root, probe, cell.depth + 1);
         self.farthest = Some(self.farthest.map_or(found, |known| known.or(found)));
+        probe
     }
 
     /// A whole element whose corners are probed.
@@ -139,9 +140,9 @@ impl<'a> Search<'a> {
         }
         // The distance to one triangle is convex, so that over the cell it is largest at a corner.
         let candidates = [cell.elements[0], cell.elements[1], cell.elements[2], cell.common];
-        let mut least = f64::INFINITY;
+        let (other, mut least) = (self.other, f64::INFINITY);
         let mut lower_by = |cell: &mut Cell, element: u32| {
-            let triangle = self.other.corners(element);
+            let triangle = other.corners(element);
             let bound = cell.corners.iter().map(|&corner| distance_to_triangle(&triangle, corner)).fold(0.0, f64::max);
             if bound < least {
                 least = bound;
@@ -159,11 +160,10 @@ impl<'a> Search<'a> {
         }
         // A place inside, which lies on the triangle that the cell lies on where the shapes agree.
         let middle = if b == c { (a + b) * 0.5 } else { (a + b + c) / 3.0 };
-        let probe = self.other.probe(middle);
+        let probe = self.probe(cell, middle);
         if !candidates.contains(&probe.element) {
             lower_by(cell, probe.element);
         }
-        self.note(middle, cell.root, probe, cell.depth + 1);
         let reach = middle.distance(a).max(middle.distance(b)).max(middle.distance(c));
         lower_to(cell, probe.upper + reach + DRIFT);
     }
@@ -272,7 +272,7 @@ impl<'a> Search<'a> {
     fn corner(&mut self, cell: &Cell, i: usize, j: usize, fraction: f64) -> Corner {
         let (a, b) = (cell.corners[i], cell.corners[j]);
         let place = if fraction == 0.5 { (a + b) * 0.5 } else { a + (b - a) * fraction.clamp(0.0, 1.0) };
-        let probe = self.probe(place, cell.root, cell.depth + 1);
+        let probe = self.probe(cell, place);
         (place, probe.upper, probe.element)
     }
 }

@@ -5,8 +5,7 @@
 //! Cascading upper bounds for triangle soup Pompeiu-Hausdorff distance, Computer Graphics Forum 2024, for trying cheap
 //! bounds before dear ones. Cutting cells along the borders of the other shape's triangles is this module's own.
 
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::BTreeMap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Exec, Reservation, Stop, parallel};
@@ -81,29 +80,43 @@ const CHUNK: usize = 16;
 /// Cells for which memory is taken at a time.
 const CELLS: u64 = 1 << 16;
 
-/// Cells by their bounds, the largest first; between equals the one that was made first.
-struct Queued {
-    cell: Cell,
-    number: u64,
+/// Cells by their bounds, in classes an eighth of an octave wide: the farthest class leads, which is all the order that
+/// the search needs, at a fraction of a heap's cost.
+#[derive(Default)]
+struct Queue {
+    classes: BTreeMap<u64, Vec<Cell>>,
+    len: usize,
 }
 
-impl PartialEq for Queued {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
+impl Queue {
+    fn push(&mut self, cell: Cell) {
+        // Positive numbers are in the order of their bits; three bits of the fraction are kept.
+        self.classes.entry(cell.upper.to_bits() >> 49).or_default().push(cell);
+        self.len += 1;
     }
-}
 
-impl Eq for Queued {}
-
-impl PartialOrd for Queued {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
+    /// Takes cells of the farthest classes that miss the goal, and returns the largest bound of those that meet it.
+    fn take(&mut self, goal: &Goal, count: usize, batch: &mut Vec<Cell>) -> f64 {
+        let mut settled = 0.0f64;
+        while let Some(mut class) = self.classes.last_entry() {
+            while let Some(cell) = class.get_mut().pop() {
+                self.len -= 1;
+                if goal.is_met(cell.upper) {
+                    settled = settled.max(cell.upper);
+                    continue;
+                }
+                batch.push(cell);
+                if batch.len() == count {
+                    return settled;
+                }
+            }
+            class.remove();
+        }
+        settled
     }
-}
 
-impl Ord for Queued {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.cell.upper.total_cmp(&other.cell.upper).then(other.number.cmp(&self.number))
+    fn worst(&self) -> f64 {
+        self.classes.last_key_value().map_or(0.0, |(_, class)| class.iter().map(|cell| cell.upper).fold(0.0, f64::max))
     }
 }
 
@@ -150,7 +163,7 @@ pub(super) fn directed(
     goal.lower = farthest.lower;
     let (mut settled, mut queries, mut splits, mut rounds) = (0.0f64, from.positions.len() as u64, 0u64, 0u64);
     // Whole elements first. As many cells as there are elements may be left.
-    let mut memory = vec![exec.reserve_elements(from.triangles.len() as u64, size_of::<Queued>())?];
+    let mut memory = vec![exec.reserve_elements(from.triangles.len() as u64, 2 * size_of::<Cell>())?];
     let mut room = from.triangles.len() as u64;
     let start = exec.part(0.0, 0.3);
     let whole = parallel::map_chunks(&start, from.triangles.len(), 256, |range| {
@@ -163,17 +176,13 @@ pub(super) fn directed(
         found.take(&search);
         Ok::<_, Stop>(found)
     })?;
-    let mut queue = BinaryHeap::new();
-    let mut number = 0;
-    let mut collect = |parts: Vec<Found>, queue: &mut BinaryHeap<Queued>, settled: &mut f64, queries: &mut u64| {
+    let mut queue = Queue::default();
+    let mut collect = |parts: Vec<Found>, queue: &mut Queue, settled: &mut f64, queries: &mut u64| {
         for part in parts {
             *settled = settled.max(part.settled);
             *queries += part.queries;
             farthest = part.farthest.map_or(farthest, |other| farthest.or(other));
-            for cell in part.cells {
-                queue.push(Queued { cell, number });
-                number += 1;
-            }
+            part.cells.into_iter().for_each(|cell| queue.push(cell));
         }
         farthest
     };
@@ -183,21 +192,14 @@ pub(super) fn directed(
     let mut open = 0.0f64;
     loop {
         batch.clear();
-        while batch.len() < ROUND
-            && let Some(next) = queue.pop()
-        {
-            if goal.is_met(next.cell.upper) {
-                // All others are no larger.
-                settled = settled.max(next.cell.upper);
-                queue.clear();
-                break;
-            }
-            batch.push(next.cell);
+        settled = settled.max(queue.take(&goal, ROUND, &mut batch));
+        if batch.is_empty() {
+            break;
         }
-        let Some(worst) = batch.first().map(|cell| cell.upper) else { break };
+        let worst = batch.iter().map(|cell| cell.upper).fold(queue.worst(), f64::max);
         rest.progress((goal.lower / worst).clamp(0.0, 1.0));
         // Each cell becomes three at most, for which there must be room.
-        let needed = (queue.len() + 3 * ROUND) as u64;
+        let needed = (queue.len + 3 * ROUND) as u64;
         if splits >= u64::from(options.max_splits) || !make_room(needed, &mut room, &mut memory, exec) {
             open = worst;
             break;
@@ -242,7 +244,7 @@ pub(super) fn directed(
 /// Takes memory for more cells where there is none left; false where the budget has none.
 fn make_room(needed: u64, room: &mut u64, memory: &mut Vec<Reservation>, exec: &Exec) -> bool {
     while *room < needed {
-        match exec.reserve_elements(CELLS, size_of::<Queued>()) {
+        match exec.reserve_elements(CELLS, 2 * size_of::<Cell>()) {
             Ok(more) => memory.push(more),
             Err(_) => return false,
         }

@@ -1,11 +1,11 @@
 //! Two shapes made ready: on one scale, each with its hierarchy.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{ClosestPoint, Exec, Reservation, Stop, parallel};
+use shapeloom_core::{Closest, ClosestPoint, Exec, Reservation, Stop, parallel};
 use shapeloom_spatial::TriangleBvh;
 
 use super::Simplices;
-use super::foot::{FootError, up};
+use super::foot::{FootError, PAD, up};
 use crate::JudgeError;
 use crate::scaled::exponent_of;
 
@@ -108,7 +108,18 @@ impl<'a> Side<'a> {
 
     /// The distance from a place to this shape. The shape has triangles and the place is finite, so there is one.
     pub fn probe(&self, place: DVec3) -> Probe {
-        match self.bvh.closest(place) {
+        self.probed(place, self.bvh.closest(place))
+    }
+
+    /// The same where the distance is known to be no more than `upper`: less of the hierarchy is looked at.
+    pub fn probe_within(&self, place: DVec3, upper: f64) -> Probe {
+        // A little more than the rounding of either distance.
+        let found = self.bvh.closest_within(place, upper * (1.0 + 1e-14) + 4.0 * PAD);
+        self.probed(place, found.or_else(|| self.bvh.closest(place)))
+    }
+
+    fn probed(&self, place: DVec3, found: Option<Closest>) -> Probe {
+        match found {
             Some(closest) => {
                 let distance = closest.distance_squared.sqrt();
                 let corner = distance == 0.0 && self.corners(closest.element).contains(&place);
