@@ -15,6 +15,8 @@ pub(crate) enum Failure {
     Narrow { error: ConvertError, file: Option<PathBuf> },
     /// Whoever read standard output has had enough: nothing to tell, and no failure of ours.
     PipeClosed,
+    /// A check or comparison found what it was to look for. All is told by then.
+    Found,
     /// An error of the command line itself.
     Own { code: &'static str, category: Category, message: String, advice: Option<String> },
 }
@@ -69,13 +71,14 @@ impl Failure {
     fn category(&self) -> Option<Category> {
         match self {
             Self::Narrow { error, .. } => Some(error.category()),
-            Self::PipeClosed => None,
+            Self::PipeClosed | Self::Found => None,
             Self::Own { category, .. } => Some(*category),
         }
     }
 
     pub(crate) fn exit_code(&self) -> u8 {
         match self.category() {
+            None if matches!(self, Self::Found) => 1,
             None => 0,
             Some(Category::Usage) => 2,
             Some(Category::Malformed) => 3,
@@ -92,7 +95,7 @@ impl Failure {
         let (code, mut message, advice) = match self {
             Self::Narrow { error, .. } => (error.diagnostic().code(), error.to_string(), error.diagnostic().advice()),
             Self::Own { code, message, advice, .. } => (*code, message.clone(), advice.clone()),
-            Self::PipeClosed => return,
+            Self::PipeClosed | Self::Found => return,
         };
         if let Self::Narrow { file: Some(file), .. } = self {
             let name = file.display().to_string();

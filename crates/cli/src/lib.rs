@@ -63,6 +63,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams,
         session.in_pool(|session| match &arguments.command {
             Command::Convert(arguments) => commands::convert::run(arguments, session),
             Command::Info(arguments) => commands::info::run(arguments, session),
+            Command::Compare(arguments) => commands::compare::run(arguments, session),
             Command::Render(arguments) => commands::render::run(arguments, session),
             Command::Make(arguments) => commands::make::run(arguments, session),
             Command::Formats => commands::formats::run(session),

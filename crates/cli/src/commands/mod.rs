@@ -1,5 +1,7 @@
 //! The commands, a file each.
 
+pub(crate) mod coloring;
+pub(crate) mod compare;
 pub(crate) mod convert;
 pub(crate) mod draw;
 pub(crate) mod explain;
