@@ -36,7 +36,7 @@ fn what_the_lines_name_is_there_and_the_page_says_the_same() {
             (None, Some(command)) => {
                 let command = command.as_str().expect("words");
                 let name = command.split_whitespace().next().unwrap_or_default();
-                let known = ["convert", "info", "render", "make", "formats", "graph", "explain"];
+                let known = ["convert", "info", "compare", "render", "make", "formats", "graph", "explain"];
                 assert!(known.contains(&name), "{id}: no command {name}");
                 format!("`shapeloom {command}`")
             }

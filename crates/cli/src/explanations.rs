@@ -96,9 +96,15 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-outputs", "Two outputs have one name, or two kinds of data want standard output."),
     ("E-usage-setting", "An option given with --set means nothing here: for this format, or for this command."),
     ("E-usage-shape", "There is no ready shape of that name."),
-    ("E-usage-shapes", "compare takes two shapes or more, or one and --truth, and standard input for one of them at most."),
+    (
+        "E-usage-shapes",
+        "compare takes two shapes or more, or one and --truth, and standard input for one of them at most.",
+    ),
     ("E-usage-threads", "That many threads could not be started."),
-    ("W-compare-open", "A surface has sides that are not passed as often one way as the other, so it encloses no volume."),
+    (
+        "W-compare-open",
+        "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
+    ),
     ("W-compare-overflow", "The area or volume of a shape is beyond the largest number and is left out."),
     (
         "W-patch-degenerate",

@@ -20,8 +20,8 @@ pub(crate) enum ColorBy {
 
 /// Triangles of a coloured picture are this part of the diagonal at most, so that colours vary within large ones, and
 /// this many at most for each surface.
-const EDGE: f64 = 1.0 / 150.0;
-const MOST: usize = 1_000_000;
+const EDGE: f64 = 1.0 / 100.0;
+const MOST: usize = 500_000;
 
 /// Colours every surface of a scene by its distance to a shape. Returns the distances that stand for the ends of the
 /// colour map: those asked for, or from 0 to the largest at a vertex.

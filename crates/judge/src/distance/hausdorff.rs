@@ -196,12 +196,11 @@ pub(super) fn directed(
         if batch.is_empty() {
             break;
         }
-        let worst = batch.iter().map(|cell| cell.upper).fold(queue.worst(), f64::max);
-        rest.progress((goal.lower / worst).clamp(0.0, 1.0));
+        rest.progress((goal.lower / batch[0].upper).clamp(0.0, 1.0));
         // Each cell becomes three at most, for which there must be room.
         let needed = (queue.len + 3 * ROUND) as u64;
         if splits >= u64::from(options.max_splits) || !make_room(needed, &mut room, &mut memory, exec) {
-            open = worst;
+            open = batch.iter().map(|cell| cell.upper).fold(queue.worst(), f64::max);
             break;
         }
         splits += batch.len() as u64;

@@ -171,9 +171,9 @@ impl Quadrature<'_> {
     }
 
     fn point(&self, sums: &mut Sums) {
-        let Probe { lower, upper, .. } = self.probes[0];
-        let triple = [upper.midpoint(lower), lower, upper];
-        sums_add(sums, 1.0, triple, triple.map(|x| x * x), upper.midpoint(lower));
+        let Probe { distance, lower, upper, .. } = self.probes[0];
+        let triple = [distance, lower, upper];
+        *sums = sums.add(1.0, triple, triple.map(|x| x * x), distance);
     }
 
     /// A cell, as a triangle or a segment `[a, b, b]`.
@@ -213,22 +213,13 @@ impl Quadrature<'_> {
         }
         let (most, most_squared) = (most * (1.0 + 1e-14), most_squared * (1.0 + 1e-14));
         let least = (probe.lower - spread).max(0.0).min(most);
-        let found = |probe: &Probe| probe.lower.midpoint(probe.upper);
-        let values = corners.map(|corner| found(&corner.1));
-        let value = found(&probe) * inner + along(values) * (1.0 - inner);
-        let square = found(&probe).powi(2) * inner + along(values.map(|x| x * x)) * (1.0 - inner);
-        let largest = values.into_iter().fold(found(&probe), f64::max);
+        let values = corners.map(|corner| corner.1.distance);
+        let value = probe.distance * inner + along(values) * (1.0 - inner);
+        let square = probe.distance * probe.distance * inner + along(values.map(|x| x * x)) * (1.0 - inner);
+        let largest = values.into_iter().fold(probe.distance, f64::max);
         let least_squared = (least * least).min(most_squared);
-        sums_add(
-            sums,
-            weight,
-            [value.clamp(least, most), least, most],
-            [square.clamp(least_squared, most_squared), least_squared, most_squared],
-            largest,
-        );
+        let distance = [value.clamp(least, most), least, most];
+        let square = [square.clamp(least_squared, most_squared), least_squared, most_squared];
+        *sums = sums.add(weight, distance, square, largest);
     }
-}
-
-fn sums_add(sums: &mut Sums, weight: f64, distance: [f64; 3], square: [f64; 3], largest: f64) {
-    *sums = sums.add(weight, distance, square, largest);
 }

@@ -22,6 +22,8 @@ pub(super) struct Side<'a> {
 /// The distance from a place to a shape, from both sides.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
+    /// As computed.
+    pub distance: f64,
     /// The true distance is no less, and no more.
     pub lower: f64,
     pub upper: f64,
@@ -124,9 +126,15 @@ impl<'a> Side<'a> {
                 let distance = closest.distance_squared.sqrt();
                 let corner = distance == 0.0 && self.corners(closest.element).contains(&place);
                 let upper = if corner { 0.0 } else { up(distance) };
-                Probe { lower: self.foot_error.down(distance), upper, element: closest.element, point: closest.point }
+                Probe {
+                    distance,
+                    lower: self.foot_error.down(distance),
+                    upper,
+                    element: closest.element,
+                    point: closest.point,
+                }
             }
-            None => Probe { lower: 0.0, upper: f64::INFINITY, element: 0, point: place },
+            None => Probe { distance: f64::INFINITY, lower: 0.0, upper: f64::INFINITY, element: 0, point: place },
         }
     }
 
@@ -135,7 +143,8 @@ impl<'a> Side<'a> {
         let memory = exec.reserve_elements(other.positions.len() as u64, size_of::<Probe>() + 1)?;
         let mut named = vec![false; other.positions.len()];
         other.triangles.iter().flatten().for_each(|&corner| named[corner as usize] = true);
-        let nothing = Probe { lower: 0.0, upper: f64::INFINITY, element: 0, point: DVec3::ZERO };
+        let nothing =
+            Probe { distance: f64::INFINITY, lower: 0.0, upper: f64::INFINITY, element: 0, point: DVec3::ZERO };
         let mut probes = vec![nothing; other.positions.len()];
         parallel::fill_chunks(exec, &mut probes, 256, |first, part| {
             for (index, probe) in (first..).zip(part) {

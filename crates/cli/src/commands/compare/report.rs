@@ -18,7 +18,7 @@ use crate::session::Session;
 
 pub(crate) const INDEX: &str = "index.html";
 const TABLE: &str = "distances.csv";
-const SIZE: (u32, u32) = (640, 480);
+const SIZE: (u32, u32) = (560, 420);
 
 /// Every file that a report may have.
 pub(super) fn files(folder: &Path, shapes: &[&Path]) -> Vec<PathBuf> {
@@ -99,7 +99,7 @@ fn draw(
     let up = subject.shape.up.unwrap_or(UpAxis::Z).vector();
     let (width, height) = SIZE;
     let camera = sensible_camera(bounds, up, f64::from(width) / f64::from(height))?;
-    let picture = Picture { width, height, seed: session.globals.seed, ..Picture::new() };
+    let picture = Picture { width, height, samples: 2, seed: session.globals.seed, ..Picture::new() };
     picture.validate()?;
     let png = picture.draw(&scene, &camera, up, &exec)?.to_png()?;
     Ok(Some(Drawn { name, png, range }))
