@@ -18,7 +18,8 @@ use crate::session::Session;
 
 pub(crate) const INDEX: &str = "index.html";
 const TABLE: &str = "distances.csv";
-const SIZE: (u32, u32) = (560, 420);
+/// Many pictures, each no larger than a page shows it.
+const SIZE: (u32, u32) = (480, 360);
 
 /// Every file that a report may have.
 pub(super) fn files(folder: &Path, shapes: &[&Path]) -> Vec<PathBuf> {
@@ -99,7 +100,15 @@ fn draw(
     let up = subject.shape.up.unwrap_or(UpAxis::Z).vector();
     let (width, height) = SIZE;
     let camera = sensible_camera(bounds, up, f64::from(width) / f64::from(height))?;
-    let picture = Picture { width, height, samples: 2, seed: session.globals.seed, ..Picture::new() };
+    let picture = Picture {
+        width,
+        height,
+        samples: 2,
+        ambient_rays: 8,
+        shadow_rays: 4,
+        seed: session.globals.seed,
+        ..Picture::new()
+    };
     picture.validate()?;
     let png = picture.draw(&scene, &camera, up, &exec)?.to_png()?;
     Ok(Some(Drawn { name, png, range }))
