@@ -3,6 +3,7 @@
 use shapeloom_core::glam::DVec3;
 
 use super::foot::distance_to_triangle;
+use super::patchwork::{self, Patchwork};
 use super::side::{Probe, Side};
 
 /// What rounding can do to a new corner, in scaled units: one step of cutting moves it by less, so a cell at depth `n`
@@ -69,6 +70,11 @@ pub(super) struct Goal {
 impl Goal {
     pub fn is_met(&self, upper: f64) -> bool {
         upper - self.lower <= (self.relative * upper).max(self.absolute)
+    }
+
+    /// About the largest bound that meets the goal, and no larger.
+    fn enough(&self) -> f64 {
+        (self.lower / (1.0 - self.relative)).max(self.lower + self.absolute) * (1.0 - 1e-12)
     }
 }
 
@@ -158,6 +164,9 @@ impl<'a> Search<'a> {
         if self.goal.is_met(cell.upper) || longest == 0.0 {
             return;
         }
+        if self.cover(cell, NONE) {
+            return;
+        }
         // A place inside, which lies on the triangle that the cell lies on where the shapes agree.
         let middle = if b == c { (a + b) * 0.5 } else { (a + b + c) / 3.0 };
         let probe = self.probe(cell, middle);
@@ -166,6 +175,31 @@ impl<'a> Search<'a> {
         }
         let reach = middle.distance(a).max(middle.distance(b)).max(middle.distance(c));
         lower_to(cell, probe.upper + reach + DRIFT);
+        if !self.goal.is_met(cell.upper) && !candidates.contains(&probe.element) {
+            self.cover(cell, probe.element);
+        }
+    }
+
+    /// Lowers the bound of a cell by the triangles that are near to its corners, to it as a whole, and by another one, all
+    /// together. Whether that meets the goal.
+    fn cover(&self, cell: &mut Cell, another: u32) -> bool {
+        let mut triangles = [[DVec3::ZERO; 3]; 5];
+        let mut elements = [NONE; 5];
+        let mut count = 0;
+        for element in [cell.elements[0], cell.elements[1], cell.elements[2], cell.common, another] {
+            if element != NONE && !elements[..count].contains(&element) {
+                elements[count] = element;
+                triangles[count] = self.other.corners(element);
+                count += 1;
+            }
+        }
+        if count < 2 {
+            return false;
+        }
+        let drift = f64::from(cell.depth) * DRIFT + patchwork::DRIFT;
+        let patchwork = Patchwork { triangles: &triangles[..count], enough: self.goal.enough() - 2.0 * drift };
+        cell.upper = cell.upper.min(patchwork.bound(&cell.corners) * (1.0 + 1e-15) + drift);
+        self.goal.is_met(cell.upper)
     }
 
     /// The pieces of a cell, with their bounds; none where rounding leaves nothing to gain.

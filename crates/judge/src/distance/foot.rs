@@ -18,24 +18,33 @@ pub(super) fn up(distance: f64) -> f64 {
 
 /// No less than the distance from a point to a triangle; 0 where the point is one of the corners.
 ///
-/// The minimum over the sides and the foot on the plane where it falls inside: each candidate is a point of the triangle,
-/// so thin triangles and those without area give true bounds.
+/// The foot on the plane where it falls inside, else the nearest of the sides: each is a point of the triangle, so that
+/// thin triangles and those without area give true bounds, if not the best ones.
 pub(super) fn distance_to_triangle(corners: &[DVec3; 3], query: DVec3) -> f64 {
     if corners.contains(&query) {
         return 0.0;
     }
     let [a, b, c] = *corners;
     let (ab, ac) = (b - a, c - a);
-    let mut squared = to_segment(a, ab, query).min(to_segment(a, ac, query)).min(to_segment(b, c - b, query));
     let normal = ab.cross(ac);
-    let area = normal.length_squared();
-    if area > 0.0 {
-        let from = query - a;
-        let v = from.cross(ac).dot(normal) / area;
-        let w = ab.cross(from).dot(normal) / area;
-        if v > 0.0 && w > 0.0 && v + w < 1.0 {
-            squared = squared.min((query - (a + ab * v + ac * w)).length_squared());
-        }
+    let (area, from) = (normal.length_squared(), query - a);
+    let (v, w) = (from.cross(ac).dot(normal), ab.cross(from).dot(normal));
+    let u = area - v - w;
+    if u > 0.0 && v > 0.0 && w > 0.0 {
+        let (v, w) = (v / area, w / area);
+        return up((query - (a + ab * v + ac * w)).length());
+    }
+    // The nearest point lies on a side beyond which the query is; of a triangle without area, on any.
+    let all = area <= 0.0;
+    let mut squared = f64::INFINITY;
+    if u <= 0.0 || all {
+        squared = to_segment(b, c - b, query);
+    }
+    if v <= 0.0 || all {
+        squared = squared.min(to_segment(a, ac, query));
+    }
+    if w <= 0.0 || all {
+        squared = squared.min(to_segment(a, ab, query));
     }
     up(squared.sqrt())
 }

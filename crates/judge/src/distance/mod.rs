@@ -24,6 +24,7 @@ mod foot;
 mod hausdorff;
 mod mean;
 mod measure;
+mod patchwork;
 mod samples;
 mod side;
 mod simplices;
