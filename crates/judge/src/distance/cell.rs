@@ -324,3 +324,52 @@ fn piece(cell: &Cell, corners: [Corner; 3], cuts: u8) -> Cell {
         ..*cell
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::Simplices;
+    use crate::distance::side::Scale;
+    use shapeloom_core::Exec;
+
+    fn area(corners: &[DVec3; 3]) -> f64 {
+        (corners[1] - corners[0]).cross(corners[2] - corners[0]).length() / 2.0
+    }
+
+    /// Cut along borders or in half, the parts of a cell are the cell.
+    #[test]
+    fn parts_have_the_area_or_length_of_the_whole() {
+        let positions = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * 0.4);
+        let shape = Simplices::new(&positions[..], &[[0, 1, 2]][..]);
+        let scale = Scale::of([&shape, &shape]);
+        let other = Side::new(&shape, 1, scale, &Exec::default()).unwrap();
+        let goal = Goal { lower: 0.0, relative: 0.0, absolute: 0.0 };
+        let (mut cuts, mut halves) = (0, 0);
+        for k in 0..300u32 {
+            let corner = |i: u32| {
+                let turn = f64::from(k * 7 + i * 5);
+                DVec3::new((turn * 1.3).sin() * 0.4 + 0.2, (turn * 2.1).cos() * 0.4 + 0.2, 0.1 * (turn * 0.7).sin())
+            };
+            let corners = match k % 3 {
+                0 => [corner(0), corner(1), corner(1)],
+                _ => [corner(0), corner(1), corner(2)],
+            };
+            let probes = corners.map(|corner| other.probe(corner));
+            let mut search = Search::new(&other, goal);
+            let cell = search.whole(corners, [&probes[0], &probes[1], &probes[2]], 0);
+            let mut parts = Vec::new();
+            search.split(&cell, &mut parts);
+            let sum =
+                |measure: &dyn Fn(&[DVec3; 3]) -> f64| parts.iter().map(|part| measure(&part.corners)).sum::<f64>();
+            assert!((sum(&area) - area(&corners)).abs() < 1e-13, "{cell:?} {parts:?}");
+            if k % 3 == 0 {
+                let length = |corners: &[DVec3; 3]| corners[0].distance(corners[2]);
+                assert!((sum(&length) - length(&corners)).abs() < 1e-13);
+            }
+            assert!(parts.len() > 1 && parts.iter().all(|part| part.upper <= cell.upper + 1e-13));
+            cuts += u32::from(parts.len() == 3);
+            halves += u32::from(parts.len() == 2);
+        }
+        assert!(cuts > 50 && halves > 50, "{cuts} {halves}");
+    }
+}

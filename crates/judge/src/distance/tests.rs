@@ -341,6 +341,23 @@ fn means_hold_closed_forms_within_their_bounds() {
 }
 
 #[test]
+fn large_triangles_weigh_as_much_as_they_are_large() {
+    // A square of area 1 at height 1 and one of area 9 at height 2, in few and in many triangles.
+    let plane = moved(&grid(1), |p| p * 40.0 - DVec3::new(20.0, 20.0, 0.0));
+    for n in [1, 5] {
+        let (mut both, large) = (moved(&grid(6 - n), |p| p + DVec3::Z), moved(&grid(n), |p| p * 3.0 + DVec3::Z * 2.0));
+        let first = both.0.len() as u32;
+        both.0.extend(large.0);
+        both.1.extend(large.1.iter().map(|triangle| triangle.map(|corner| corner + first)));
+        let found = exact().measure(&shape(&both), &shape(&plane), &Exec::default()).unwrap();
+        assert!((found.a_to_b.mean.value - 1.9).abs() < 1e-12, "{found:?}");
+        assert!((found.a_to_b.rms.value - 3.7f64.sqrt()).abs() < 1e-12, "{found:?}");
+        // The diagonal is that of the first shape.
+        assert!((found.diagonal - 19f64.sqrt()).abs() < 1e-12, "{found:?}");
+    }
+}
+
+#[test]
 fn samples_of_anything_can_be_compared() {
     let (positions, triangles) = grid(2);
     let bvh = TriangleBvh::build(&positions, &triangles, &Exec::default()).unwrap();
