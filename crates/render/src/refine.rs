@@ -30,7 +30,8 @@ impl SceneMesh {
             a.distance(b).max(b.distance(c)).max(c.distance(a))
         });
         let longest = longest.fold(0.0, f64::max);
-        let mut edge_length = edge_length.max(longest / f64::from(MOST_PARTS));
+        let mut edge_length =
+            if edge_length.is_nan() { longest } else { edge_length.max(longest / f64::from(MOST_PARTS)) };
         while edge_length < longest && count(edge_length) > most.max(self.triangles.len()) {
             edge_length *= 1.25;
         }
@@ -118,6 +119,7 @@ mod tests {
         let same = square().refined(10.0, 500);
         assert_eq!((same.triangles.len(), same.positions.len()), (2, 6));
         assert_eq!(square().refined(f64::NAN, 10).triangles.len(), 2);
-        assert_eq!(square().refined(0.0, 10).triangles.len(), 2);
+        assert_eq!(square().refined(0.0, 10).triangles.len(), 8);
+        assert_eq!(square().refined(f64::INFINITY, 10).triangles.len(), 2);
     }
 }
