@@ -13,6 +13,7 @@ mod collection_obj;
 mod collection_off_stl;
 mod collection_ply;
 mod command_line;
+mod compare;
 mod documents;
 #[path = "../fuzz/entry.rs"]
 mod entry;

@@ -23,7 +23,7 @@ fn every_task_prints_lines_of_json() {
         let lines = String::from_utf8(out).expect("UTF-8");
         let expected = match task {
             Task::Tessellate | Task::Topology | Task::SelfIntersection => 1,
-            Task::Winding | Task::SignedDistance => 2,
+            Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
             Task::Read | Task::Write => 5,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");

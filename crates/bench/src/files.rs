@@ -48,6 +48,19 @@ pub(crate) fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), Stri
     Ok((shape, format, bytes.len() as u64))
 }
 
+/// The first mesh of a file, as triangles.
+pub(crate) fn load_triangles(path: &PathBuf) -> Result<TriMesh, String> {
+    let (shape, _, _) = load(path)?;
+    let part = shape.parts.first().ok_or_else(|| format!("{}: found no part", path.display()))?;
+    match &*part.geometry {
+        Geometry::TriMesh(mesh) => Ok(mesh.clone()),
+        Geometry::PolyMesh(mesh) => {
+            Ok(TriangulatePolygons::new().convert(mesh).map_err(|error| error.to_string())?.value)
+        }
+        other => Err(format!("{}: found a {}, expected a mesh", path.display(), other.kind())),
+    }
+}
+
 fn sizes(shape: &Shape) -> (usize, usize) {
     shape.parts.iter().fold((0, 0), |(vertices, triangles), part| match &*part.geometry {
         Geometry::TriMesh(mesh) => (vertices + mesh.positions().len(), triangles + mesh.triangles().len()),

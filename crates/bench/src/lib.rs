@@ -4,6 +4,7 @@
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
 mod files;
+mod hausdorff;
 mod measure;
 mod self_intersection;
 mod signed_distance;
@@ -64,6 +65,8 @@ pub enum Task {
     Winding,
     /// Signed distances to the same mesh at the same points.
     SignedDistance,
+    /// How far meshes are apart, bounded from both sides.
+    Hausdorff,
 }
 
 impl Task {
@@ -89,7 +92,7 @@ impl Task {
             // Peers measure both under one name.
             Self::Winding | Self::SignedDistance if input.contains("qry_surface") => "j.signed_near_1m".to_owned(),
             Self::Winding | Self::SignedDistance => "j.signed_box_100k".to_owned(),
-            Self::Tessellate | Self::Write => String::new(),
+            Self::Tessellate | Self::Write | Self::Hausdorff => String::new(),
         }
     }
 }
@@ -130,6 +133,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::SelfIntersection => self_intersection::run(&setting).map(|outcome| vec![outcome]),
         Task::Winding => winding::run(&setting),
         Task::SignedDistance => signed_distance::run(&setting),
+        Task::Hausdorff => hausdorff::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

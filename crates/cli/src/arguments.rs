@@ -8,6 +8,8 @@ use shapeloom_core::{ChoiceOption, Tolerance, ToleranceError};
 use shapeloom_judge::Profile;
 use shapeloom_render::Mode;
 
+use crate::commands::coloring::{ColorBy, range};
+
 /// Represents shapes in many forms, converts any of them into any other, and says what each conversion cost.
 #[derive(Debug, Parser)]
 #[command(name = "shapeloom", version, max_term_width = 100)]
@@ -62,6 +64,8 @@ pub(crate) enum Command {
     Info(InfoArguments),
     /// Say whether a file is sound for a purpose; exit code 1 if it is not
     Check(CheckArguments),
+    /// Measure how far shapes are apart
+    Compare(CompareArguments),
     /// Draw a picture of a file
     Render(RenderArguments),
     /// Make a ready shape
@@ -191,6 +195,15 @@ pub(crate) struct RenderArguments {
     /// Draw the sides of triangles over the surface
     #[arg(long)]
     pub(crate) wires: bool,
+    /// What the colours say
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = ColorBy::Material)]
+    pub(crate) color: ColorBy,
+    /// The shape that --color distance measures to
+    #[arg(long, value_name = "FILE")]
+    pub(crate) reference: Option<PathBuf>,
+    /// The numbers at the ends of the colours; by default from 0 to the largest
+    #[arg(long, value_name = "FROM,TO", value_parser = range, allow_hyphen_values = true)]
+    pub(crate) color_range: Option<(f64, f64)>,
     /// An option of the picture, as often as needed: key=value
     #[arg(long = "picture-set", value_name = "KEY=VALUE", value_parser = setting)]
     pub(crate) picture_settings: Vec<(String, String)>,
@@ -201,6 +214,39 @@ pub(crate) struct RenderArguments {
     /// Replace files that exist
     #[arg(long)]
     pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArguments {
+    /// The files to compare, the first with each other one; - for standard input, once
+    #[arg(required = true, value_name = "FILE")]
+    pub(crate) shapes: Vec<PathBuf>,
+    /// The shape that all files are compared with instead
+    #[arg(long, value_name = "FILE")]
+    pub(crate) truth: Option<PathBuf>,
+    /// Fail with exit code 1 where the Hausdorff distance is not proven to be within this: a length (0.01), or per cent
+    /// of the diagonal of the first shape's bounding box (0.1%)
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    pub(crate) fail_above: Option<String>,
+    /// How far the bounds of the Hausdorff distance may be apart: per cent of the upper one (1%), or a fraction (0.01)
+    #[arg(long, value_name = "GAP", default_value = "1%", value_parser = gap, allow_hyphen_values = true)]
+    pub(crate) accuracy: f64,
+    /// How many cells the mean distances are taken over, at least one for each triangle
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u32).range(1..=1_000_000_000))]
+    pub(crate) samples: u32,
+    /// How many pieces may be cut to narrow the bounds, each way
+    #[arg(long, value_name = "N", default_value_t = 20_000_000)]
+    pub(crate) max_splits: u32,
+    /// Also write a page with tables and pictures into that folder: index.html, PNG pictures, distances.csv
+    #[arg(long, value_name = "DIR")]
+    pub(crate) report: Option<PathBuf>,
+    /// Replace files of the report that exist
+    #[arg(long)]
+    pub(crate) force: bool,
+    #[command(flatten)]
+    pub(crate) way: WayArguments,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
 }
 
 #[derive(Debug, Args)]
@@ -254,6 +300,16 @@ fn setting(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
         _ => Err(format!("found \"{text}\", expected key=value")),
     }
+}
+
+fn gap(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number.trim_end(), 0.01),
+        None => (text.trim(), 1.0),
+    };
+    let gap = number.parse::<f64>().ok().map(|number| number * unit);
+    gap.filter(|gap| *gap > 0.0 && *gap <= 1.0)
+        .ok_or_else(|| format!("found \"{text}\", expected a number such as 1% or 0.01, above 0 and up to 100%"))
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

@@ -24,6 +24,9 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-camera-view", "The view direction is zero or parallel to the up direction."),
     ("E-cancelled", "The work was interrupted; nothing was written."),
     ("E-check-kind", "The file holds nothing with a surface that could be checked: points, lines, or nothing at all."),
+    ("E-compare-count", "A shape has more vertices than 32-bit ids can tell apart."),
+    ("E-compare-empty", "A file holds nothing that has a distance: no surface, lines or points."),
+    ("E-distance-empty", "A shape without triangles, segments or points has no distance from anything."),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
@@ -92,11 +95,16 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-tolerance-scale", "A tolerance in per cent needs a shape with a size; give one in model units."),
     ("E-tolerance-text", "A tolerance is neither a number nor a number with %."),
     ("E-usage-code", "There is no error or warning code of that name."),
+    ("E-usage-color", "--color distance goes with --reference FILE, and --color-range with it."),
     ("E-usage-format", "The format of standard output has to be named with --to."),
     ("E-usage-kind", "There is no kind of shape of that name; `shapeloom graph` lists them."),
     ("E-usage-outputs", "Two outputs have one name, or two kinds of data want standard output."),
     ("E-usage-setting", "An option given with --set means nothing here: for this format, or for this command."),
     ("E-usage-shape", "There is no ready shape of that name."),
+    (
+        "E-usage-shapes",
+        "compare takes two shapes or more, or one and --truth, and standard input for one of them at most.",
+    ),
     ("E-usage-threads", "That many threads could not be started."),
     (
         "W-check-contact",
@@ -154,6 +162,11 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-info-size",
         "The area or volume of a mesh is too large for the numbers, or so small that it would vanish. Scale the shape, by a power of two if no bit shall change.",
     ),
+    (
+        "W-compare-open",
+        "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
+    ),
+    ("W-compare-overflow", "The area or volume of a shape is beyond the largest number and is left out."),
     (
         "W-patch-degenerate",
         "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",

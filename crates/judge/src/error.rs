@@ -3,7 +3,7 @@
 use std::fmt;
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Category, Diagnostic, OverBudget, Stop, VectorWords};
+use shapeloom_core::{Bounds, Category, Diagnostic, OverBudget, Stop, VectorWords, Words};
 use shapeloom_spatial::BvhError;
 
 /// Why something cannot be judged.
@@ -29,6 +29,20 @@ pub enum JudgeError {
     Query {
         /// The point as given.
         found: DVec3,
+    },
+    /// A shape without triangles has no distance from anything.
+    NothingToCompare {
+        /// 0 for the first shape, 1 for the second.
+        shape: usize,
+    },
+    /// An option out of range.
+    OutOfBounds {
+        /// The option.
+        name: &'static str,
+        /// Its value.
+        found: f64,
+        /// What it accepts.
+        bounds: Bounds,
     },
     /// No hierarchy could be built over the triangles.
     Bvh(BvhError),
@@ -73,6 +87,13 @@ impl fmt::Display for JudgeError {
                 "judge: found a query at {}, expected finite coordinates, none so small that their products vanish",
                 VectorWords(*found)
             ),
+            Self::NothingToCompare { shape } => {
+                let which = if *shape == 0 { "first" } else { "second" };
+                write!(f, "distance: the {which} shape: found nothing, expected a triangle, segment or point")
+            }
+            Self::OutOfBounds { name, found, bounds } => {
+                write!(f, "judge: option {name}: found {}, expected {bounds}", Words(*found))
+            }
             Self::Bvh(error) => error.fmt(f),
             Self::OverBudget(error) => error.fmt(f),
             Self::Stop(stop) => stop.fmt(f),
@@ -97,6 +118,8 @@ impl Diagnostic for JudgeError {
             Self::NotFinite { .. } => "E-judge-finite",
             Self::Underflow { .. } => "E-judge-underflow",
             Self::Query { .. } => "E-judge-query",
+            Self::NothingToCompare { .. } => "E-distance-empty",
+            Self::OutOfBounds { .. } => "E-option-range",
             Self::Bvh(error) => error.code(),
             Self::OverBudget(error) => error.code(),
             Self::Stop(stop) => stop.code(),
@@ -108,6 +131,8 @@ impl Diagnostic for JudgeError {
             Self::NotFinite { .. } => Category::Malformed,
             Self::Underflow { .. } => Category::Unsupported,
             Self::Query { .. } => Category::Usage,
+            Self::NothingToCompare { .. } => Category::Unsupported,
+            Self::OutOfBounds { .. } => Category::Usage,
             Self::Bvh(error) => error.category(),
             Self::OverBudget(error) => error.category(),
             Self::Stop(stop) => stop.category(),
@@ -119,6 +144,7 @@ impl Diagnostic for JudgeError {
             Self::NotFinite { .. } => Some("leave such vertices out with --drop-non-finite".into()),
             Self::Underflow { .. } => Some("set coordinates that small to 0".into()),
             Self::Query { .. } => None,
+            Self::NothingToCompare { .. } | Self::OutOfBounds { .. } => None,
             Self::Bvh(error) => error.advice(),
             Self::OverBudget(error) => error.advice(),
             Self::Stop(stop) => stop.advice(),

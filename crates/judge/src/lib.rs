@@ -4,6 +4,7 @@
 //! arithmetic. Every answer that says "no" comes with a witness: the elements that show it.
 
 mod check;
+mod distance;
 mod error;
 mod faces;
 mod measures;
@@ -18,6 +19,10 @@ mod triangulated;
 mod union_find;
 
 pub use check::{NotPolyhedron, Profile, RULES, Rule, Shell, Verdict};
+pub use distance::{
+    DirectedHausdorff, Distances, Estimate, Hausdorff, MeanDistance, Measured, Sample, Simplices, Witness,
+    distance_from_samples,
+};
 pub use error::JudgeError;
 pub use faces::Faces;
 pub use measures::Measures;

@@ -61,7 +61,7 @@ pub(crate) fn times_power(vector: DVec3, exponent: i32) -> DVec3 {
 }
 
 /// The exponent `e` of a positive number in `[2^e, 2^(e+1))`.
-fn exponent_of(value: f64) -> i32 {
+pub(crate) fn exponent_of(value: f64) -> i32 {
     let bits = value.to_bits();
     let stored = (bits >> 52 & 0x7ff) as i32;
     if stored == 0 { -1011 - (bits << 12).leading_zeros() as i32 - 12 } else { stored - 1023 }

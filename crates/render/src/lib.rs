@@ -20,6 +20,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod color_map;
 mod error;
 mod film;
 #[cfg(test)]
@@ -28,6 +29,7 @@ mod image;
 mod light;
 mod painter;
 mod picture;
+mod refine;
 mod sampling;
 mod scene;
 mod shape_scene;
@@ -38,6 +40,7 @@ mod views;
 mod wire;
 
 pub use crate::image::Image;
+pub use color_map::sequential_color;
 pub use error::RenderError;
 pub use picture::{Backdrop, Mode, Picture};
 pub use scene::{Scene, SceneMesh};

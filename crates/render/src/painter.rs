@@ -114,8 +114,17 @@ impl<'a> Painter<'a> {
     fn surface(&self, pixel: &mut Pixel, at: DVec2, ray: &Ray, hit: &Hit, rays: &Dealt) {
         let point = self.stage.surface_point(ray, hit, self.options.mode == Mode::Shaded);
         let (mesh, triangle) = self.stage.owner(hit.element);
-        let front = DVec3::from_array(mesh.color.map(f64::from)).max(DVec3::ZERO);
-        let back = hit.back && self.options.show_back;
+        let front = match &mesh.colors {
+            Some(colors) => {
+                let [a, b, c] =
+                    mesh.triangles[triangle].map(|corner| DVec3::from_array(colors[corner as usize].map(f64::from)));
+                a + (b - a) * hit.parameters.x + (c - a) * hit.parameters.y
+            }
+            None => DVec3::from_array(mesh.color.map(f64::from)),
+        };
+        let front = front.max(DVec3::ZERO);
+        // Colours that say something say it on both sides.
+        let back = hit.back && self.options.show_back && mesh.colors.is_none();
         let color = if back { back_color(front) } else { front };
         pixel.surface += 1.0;
         let line = if self.options.wires || self.options.mode == Mode::Wire {

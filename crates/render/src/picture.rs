@@ -351,6 +351,24 @@ mod tests {
     }
 
     #[test]
+    fn colours_of_corners_are_blended_and_show_on_both_sides() {
+        let green = |p: &DVec3| [0.0, (0.5 + 0.4 * p.x) as f32, 0.0];
+        let mesh = SceneMesh { colors: Some(square().positions.iter().map(green).collect()), ..square() };
+        let mut under = mesh.clone();
+        under.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        for mesh in [mesh, under] {
+            let image = draw(&plain(40, 40), &scene(mesh), &from_above(2.0));
+            for x in [4, 12, 20, 35] {
+                let color = [0.0, 0.1 + 0.8 * (f64::from(x) + 0.5) / 40.0, 0.0];
+                let uniform = SceneMesh { color: color.map(|c| c as f32), ..square() };
+                let wanted = draw(&plain(40, 40), &scene(uniform), &from_above(2.0)).pixel(x, 20).unwrap();
+                let found = image.pixel(x, 20).unwrap();
+                assert!(found[1].abs_diff(wanted[1]) <= 1 && found[0] == wanted[0], "{x}: {found:?} {wanted:?}");
+            }
+        }
+    }
+
+    #[test]
     fn wrong_requests_are_refused() {
         let camera = from_above(2.0);
         let fail = |picture: &Picture, scene: &Scene, up: DVec3, exec: &Exec| {

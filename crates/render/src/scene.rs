@@ -5,7 +5,7 @@ use shapeloom_core::glam::DVec3;
 
 use crate::RenderError;
 
-/// Triangles with one colour.
+/// Triangles with one colour, or with colours at their corners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneMesh {
     /// Corners, in model units.
@@ -19,6 +19,8 @@ pub struct SceneMesh {
     pub edges: Option<Vec<[bool; 3]>>,
     /// The colour in linear sRGB, usually between 0 and 1.
     pub color: [f32; 3],
+    /// Colours of the positions, blended over the triangles, in place of the one colour; both sides show them.
+    pub colors: Option<Vec<[f32; 3]>>,
 }
 
 impl SceneMesh {
@@ -27,7 +29,7 @@ impl SceneMesh {
 
     /// Triangles in [`SceneMesh::GLAZE`], with facets and all sides.
     pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
-        Self { positions, triangles, normals: None, edges: None, color: Self::GLAZE }
+        Self { positions, triangles, normals: None, edges: None, color: Self::GLAZE, colors: None }
     }
 }
 
@@ -62,6 +64,9 @@ impl Scene {
             }
             if let Some(edges) = &surface.edges {
                 length("edge flags", edges.len(), count)?;
+            }
+            if let Some(colors) = &surface.colors {
+                length("colours", colors.len(), surface.positions.len())?;
             }
             for (triangle, &found) in
                 surface.triangles.iter().enumerate().flat_map(|(i, t)| t.iter().map(move |c| (i, c)))
@@ -110,6 +115,7 @@ mod tests {
         let wrong = found(SceneMesh { normals: Some(vec![DVec3::Z]), ..one() });
         assert_eq!(wrong, RenderError::Length { mesh: 1, list: "normals", found: 1, expected: 3 });
         assert!(matches!(found(SceneMesh { edges: Some(vec![]), ..one() }), RenderError::Length { .. }));
+        assert!(matches!(found(SceneMesh { colors: Some(vec![[0.0; 3]]), ..one() }), RenderError::Length { .. }));
     }
 
     #[test]

@@ -2,9 +2,11 @@
 
 use shapeloom_convert::{Job, Wish, convert_shape, plan};
 use shapeloom_core::{Camera, Category, Deviation, Options, Reservation};
+use shapeloom_judge::Simplices;
 use shapeloom_render::{Image, Picture, Scene, camera_from, scene_of_shape, sensible_camera, turntable};
 use shapeloom_shape::{Kind, Shape, UpAxis};
 
+use super::coloring::color_by_distance;
 use crate::failure::Failure;
 use crate::session::Session;
 
@@ -61,6 +63,16 @@ impl Stage {
         let (scene, memory) = scene_of_shape(&conversion.shape, &exec)?;
         let up = shape.up.unwrap_or(UpAxis::Z);
         Ok(Self { scene, up, deviation: conversion.deviation, _memory: memory })
+    }
+
+    /// Colours the surfaces by their distance to a shape, and returns the distances at the ends of the colours.
+    pub(crate) fn color_by_distance(
+        &mut self,
+        to: &Simplices<'_>,
+        range: Option<(f64, f64)>,
+        session: &Session<'_>,
+    ) -> Result<(f64, f64), Failure> {
+        color_by_distance(&mut self.scene, to, range, &session.exec())
     }
 
     /// Draws one picture.

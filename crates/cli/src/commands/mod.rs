@@ -1,6 +1,8 @@
 //! The commands, a file each.
 
 pub(crate) mod check;
+pub(crate) mod coloring;
+pub(crate) mod compare;
 pub(crate) mod convert;
 pub(crate) mod draw;
 pub(crate) mod explain;

@@ -2,15 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use serde_json::json;
+use serde_json::{Value, json};
 use shapeloom_convert::Job;
 use shapeloom_core::{Camera, Category, Options};
 use shapeloom_render::Picture;
 use shapeloom_shape::Kind;
 
+use super::coloring::ColorBy;
+use super::compare::Subject;
 use super::convert::{absolute, check_strict, wish};
 use super::draw::{Look, Stage};
-use crate::arguments::RenderArguments;
+use crate::account;
+use crate::arguments::{RenderArguments, SourceArguments, WayArguments};
 use crate::failure::Failure;
 use crate::input::{self, is_stream};
 use crate::output::{check_free, commit, stage};
@@ -21,6 +24,7 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     let tolerance = arguments.way.tolerance()?;
     let look = look(arguments, session)?;
     check_png(&arguments.output)?;
+    check_coloring(arguments)?;
     let paths = match arguments.turntable {
         Some(_) if is_stream(&arguments.output) => {
             let message = "--turntable draws many pictures: expected a file name, found standard output";
@@ -41,9 +45,20 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
     let job = Job { wish, tolerance, settings: settings.others };
     session.stage("converting");
-    let scene = Stage::new(&input.read.shape, &job, session)?;
+    let mut scene = Stage::new(&input.read.shape, &job, session)?;
     if session.globals.strict {
         check_strict(scene.deviation, tolerance)?;
+    }
+    let mut colors = Value::Null;
+    if let Some(reference) = &arguments.reference {
+        let plain = WayArguments { method: None, via: None, settings: Vec::new(), ..arguments.way.clone() };
+        let as_it_is = SourceArguments { from: None, ..arguments.source };
+        let other = Subject::open(reference, &plain, &as_it_is, input.read.shape.up, session)?;
+        session.stage("measuring");
+        let (from, to) = scene.color_by_distance(&other.simplices, arguments.color_range, session)?;
+        session.say(format_args!("colours: distance to {} from {from} (dark) to {to} (light)", other.name));
+        let error = account::deviation(other.deviation.then(scene.deviation));
+        colors = json!({ "by": "distance", "reference": other.name, "from": from, "to": to, "error": error });
     }
     let cameras: Vec<Camera> = match arguments.turntable {
         Some(frames) => scene.turntable(&look, frames)?,
@@ -66,10 +81,27 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
             "pictures": names,
             "width": look.picture.width,
             "height": look.picture.height,
+            "colors": colors,
         });
         session.print_json(&object)?;
     }
     Ok(())
+}
+
+/// Refuses options of colours that do not go together.
+fn check_coloring(arguments: &RenderArguments) -> Result<(), Failure> {
+    let told = |message: &str| Err(Failure::usage("E-usage-color", message));
+    match (arguments.color, &arguments.reference) {
+        (ColorBy::Distance, None) => told("--color distance: found no shape to measure to, expected --reference FILE"),
+        (ColorBy::Distance, Some(path)) if is_stream(path) && is_stream(&arguments.input) => {
+            told("found standard input as the shape and as the reference, expected it once")
+        }
+        (ColorBy::Material, Some(_)) => told("found --reference, expected --color distance with it"),
+        (ColorBy::Material, None) if arguments.color_range.is_some() => {
+            told("found --color-range, expected --color distance with it")
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Refuses a picture whose name promises another format.

@@ -1,0 +1,228 @@
+//! A shape that is compared: its triangles, segments and points, and what is known of it.
+
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+use shapeloom_convert::{Job, convert_shape, plan};
+use shapeloom_core::glam::DVec3;
+use shapeloom_core::{Category, Deviation, Exec, Findings, Place, Reservation, Severity};
+use shapeloom_judge::Simplices;
+use shapeloom_mesh::TriMesh;
+use shapeloom_shape::{Geometry, Kind, Part, Shape, UpAxis};
+
+use crate::account;
+use crate::arguments::{SourceArguments, WayArguments};
+use crate::commands::convert::{absolute, wish};
+use crate::failure::Failure;
+use crate::input;
+use crate::session::Session;
+use crate::settings::Settings;
+
+/// What can be compared without being converted, triangles first.
+const KINDS: [Kind; 4] = [Kind::TriMesh, Kind::Polyline, Kind::GeometricGraph, Kind::PointCloud];
+
+/// A shape that is compared.
+pub(crate) struct Subject {
+    pub(crate) name: String,
+    pub(crate) format: &'static str,
+    /// The parts after conversion: triangle meshes, polylines, graphs and clouds.
+    pub(crate) shape: Shape,
+    /// Everything in one list of triangles, segments and points.
+    pub(crate) simplices: Simplices<'static>,
+    /// How far what is compared may be from what was read.
+    pub(crate) deviation: Deviation,
+    kinds: Vec<&'static str>,
+    area: f64,
+    /// None where there is no enclosed volume.
+    volume: Option<f64>,
+    pub(crate) findings: Findings,
+    _memory: Reservation,
+}
+
+impl Subject {
+    /// Reads a file and converts it to what can be compared. What stands upright elsewhere is turned to stand as `up`.
+    pub(crate) fn open(
+        path: &Path,
+        way: &WayArguments,
+        source: &SourceArguments,
+        up: Option<UpAxis>,
+        session: &mut Session<'_>,
+    ) -> Result<Self, Failure> {
+        let settings = Settings::sort(&way.settings);
+        settings.no_writing()?;
+        let tolerance = way.tolerance()?;
+        let input = input::open(path, source, &settings, session)?;
+        let mut shape = input.read.shape;
+        if let (Some(from), Some(to)) = (shape.up, up)
+            && from != to
+        {
+            shape = Shape { up: Some(to), ..shape.transformed(&from.rotation_to(to)) };
+            session.say(format_args!("{}: turned from {} up to {} up", input.name, from.name(), to.name()));
+        }
+        let kinds = shape.kinds().into_iter().map(Kind::name).collect();
+        let wish = wish(way, &KINDS)?;
+        let tolerance = absolute(tolerance, &shape, &wish)?;
+        let job = Job { wish, tolerance, settings: settings.others };
+        session.stage("converting");
+        if let Some(part) = shape.parts.first() {
+            // A clear word where no part can be compared.
+            plan(part.geometry.kind(), &job.wish).map_err(|error| Failure::from(error).about(path))?;
+        }
+        let exec = session.exec();
+        let conversion = convert_shape(&shape, &job, &exec).map_err(|error| Failure::from(error).about(path))?;
+        for loss in &conversion.losses {
+            session.say(format_args!("{}: not compared: {loss}", input.name));
+        }
+        let (simplices, memory) = simplices(&conversion.shape, &exec)?;
+        if simplices.triangles.is_empty() {
+            return Err(Failure::Own {
+                code: "E-compare-empty",
+                category: Category::Unsupported,
+                message: format!("{}: found nothing, expected a surface, lines or points to compare", input.name),
+                advice: None,
+            });
+        }
+        let mut subject = Self {
+            name: input.name,
+            format: input.format.id,
+            simplices,
+            deviation: conversion.deviation,
+            kinds,
+            area: 0.0,
+            volume: None,
+            findings: input.read.findings,
+            shape: conversion.shape,
+            _memory: memory,
+        };
+        subject.measure(&exec)?;
+        Ok(subject)
+    }
+
+    /// The area, and the volume of what is closed.
+    fn measure(&mut self, exec: &Exec) -> Result<(), Failure> {
+        let mut volume = Some(0.0);
+        let mut surfaces = false;
+        for part in &self.shape.parts {
+            let placed = part.placed();
+            let Geometry::TriMesh(mesh) = &*placed else { continue };
+            surfaces = true;
+            self.area += mesh.area();
+            let whole = is_cycle(mesh, exec)?;
+            volume = volume.filter(|_| whole).map(|volume| volume + mesh.volume());
+        }
+        self.volume = volume.filter(|_| surfaces);
+        if surfaces && self.volume.is_none() {
+            let message = "the surface is not closed: it encloses no volume";
+            self.findings.push("W-compare-open", Severity::Note, Place::Whole, message);
+        }
+        if !self.area.is_finite() || self.volume.is_some_and(|volume| !volume.is_finite()) {
+            let message = "the area or volume is beyond the largest number: it is left out";
+            self.findings.push("W-compare-overflow", Severity::Warning, Place::Whole, message);
+        }
+        Ok(())
+    }
+
+    /// Whether some part has a surface that can be drawn.
+    pub(crate) fn has_surface(&self) -> bool {
+        self.shape.parts.iter().any(is_surface)
+    }
+
+    /// The parts with a surface.
+    pub(crate) fn surface(&self) -> Shape {
+        Shape {
+            parts: self.shape.parts.iter().filter(|part| is_surface(part)).cloned().collect(),
+            ..self.shape.clone()
+        }
+    }
+
+    /// The area; none where there is no surface, or it is beyond the numbers.
+    pub(crate) fn area(&self) -> Option<f64> {
+        self.has_surface().then_some(self.area).filter(|area| area.is_finite())
+    }
+
+    /// The volume; none where the surface is not closed.
+    pub(crate) fn volume(&self) -> Option<f64> {
+        self.volume.filter(|volume| volume.is_finite())
+    }
+
+    /// What is known of the shape alone. Columns of its topology (closed, components, genus) belong here.
+    pub(crate) fn account(&self) -> Map<String, Value> {
+        let bounds = self.simplices.bounds();
+        let value = json!({
+            "name": self.name,
+            "format": self.format,
+            "kinds": self.kinds,
+            "elements": self.simplices.triangles.len(),
+            "bounds": account::bounds(&bounds),
+            "diagonal": account::number(bounds.diagonal()),
+            "area": self.area().map(account::number),
+            "volume": self.volume().map(account::number),
+            "deviation": account::deviation(self.deviation),
+            "findings": account::findings(&self.findings),
+        });
+        match value {
+            Value::Object(object) => object,
+            _ => Map::new(),
+        }
+    }
+}
+
+fn is_surface(part: &Part) -> bool {
+    matches!(&*part.geometry, Geometry::TriMesh(mesh) if !mesh.triangles().is_empty())
+}
+
+/// All parts, placed, in one list.
+fn simplices(shape: &Shape, exec: &Exec) -> Result<(Simplices<'static>, Reservation), Failure> {
+    let (mut positions, mut triangles): (Vec<DVec3>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
+    // As large as the geometry itself at most, for each instance.
+    let bytes = shape.parts.iter().map(|part| part.geometry.memory_bytes() as u64).fold(0, u64::saturating_add);
+    let memory = exec.reserve(bytes)?;
+    for part in &shape.parts {
+        exec.check()?;
+        let placed = part.placed();
+        let found = match &*placed {
+            Geometry::TriMesh(mesh) => Simplices::from(mesh),
+            Geometry::Polyline(line) => Simplices::from(line),
+            Geometry::GeometricGraph(graph) => Simplices::from(graph),
+            Geometry::PointCloud(cloud) => Simplices::from(cloud),
+            _ => continue,
+        };
+        let Ok(first) = u32::try_from(positions.len()) else { continue };
+        positions.extend_from_slice(&found.positions);
+        if positions.len() >= u32::MAX as usize {
+            return Err(Failure::Own {
+                code: "E-compare-count",
+                category: Category::Unsupported,
+                message: format!("found {} vertices, expected at most {}", positions.len(), u32::MAX - 1),
+                advice: None,
+            });
+        }
+        triangles.extend(found.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
+    }
+    Ok((Simplices::new(positions, triangles), memory))
+}
+
+/// Whether every side is passed as often one way as the other, vertices at one place taken as one: then the volume does
+/// not depend on where it is measured from.
+fn is_cycle(mesh: &TriMesh, exec: &Exec) -> Result<bool, Failure> {
+    let _memory = exec.reserve_elements(mesh.triangles().len() as u64 * 3 + mesh.positions().len() as u64, 32)?;
+    let positions = mesh.positions();
+    // Adding zero turns -0 into 0.
+    let key = |vertex: u32| (positions[vertex as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
+    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
+    order.sort_unstable_by_key(|&vertex| key(vertex));
+    let mut one = vec![0u32; positions.len()];
+    for (place, &vertex) in order.iter().enumerate() {
+        let same = place > 0 && key(order[place - 1]) == key(vertex);
+        one[vertex as usize] = if same { one[order[place - 1] as usize] } else { vertex };
+    }
+    exec.check()?;
+    let sides = mesh.triangles().iter().flat_map(|triangle| {
+        let [a, b, c] = triangle.map(|vertex| one[vertex as usize]);
+        [(a, b), (b, c), (c, a)]
+    });
+    let mut sides: Vec<(u32, u32, i32)> =
+        sides.filter(|(a, b)| a != b).map(|(a, b)| if a < b { (a, b, 1) } else { (b, a, -1) }).collect();
+    sides.sort_unstable();
+    Ok(sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).all(|same| same.iter().map(|side| side.2).sum::<i32>() == 0))
+}
