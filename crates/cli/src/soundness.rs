@@ -128,6 +128,23 @@ impl Soundness {
         }
     }
 
+    /// Whether it is closed, its components and its genus, in words.
+    pub(crate) fn brief(&self) -> [String; 3] {
+        let (genus, genus_is) = self.genus();
+        let genus = genus.map_or_else(|| genus_is.to_owned(), |genus| format!("{genus} {genus_is}"));
+        [if self.closed { "yes" } else { "no" }.to_owned(), self.components.to_string(), genus]
+    }
+
+    /// The genus and what it counts: of surfaces that are not orientable it is the number of crosscaps.
+    fn genus(&self) -> (Option<u64>, &'static str) {
+        match (self.handles, self.crosscaps) {
+            (Some(handles), Some(0)) => (Some(handles), "handles"),
+            (Some(0), Some(crosscaps)) => (Some(crosscaps), "crosscaps"),
+            (Some(_), Some(_)) => (None, "handles and crosscaps"),
+            _ => (None, "unknown: not a manifold"),
+        }
+    }
+
     /// Adds the keys of a part among very many.
     pub(crate) fn tell_briefly(&self, object: &mut Map<String, Value>) {
         let counts = [("vertices", self.vertices), ("edges", self.edges), ("faces", self.faces)];
@@ -137,13 +154,7 @@ impl Soundness {
     /// Adds all keys to an object.
     pub(crate) fn tell(&self, object: &mut Map<String, Value>) {
         let size = |value: Option<f64>| value.map_or(Value::Null, number);
-        // Of surfaces that are not orientable the genus is the number of crosscaps.
-        let (genus, genus_is) = match (self.handles, self.crosscaps) {
-            (Some(handles), Some(0)) => (Some(handles), "handles"),
-            (Some(0), Some(crosscaps)) => (Some(crosscaps), "crosscaps"),
-            (Some(_), Some(_)) => (None, "handles and crosscaps"),
-            _ => (None, "unknown: not a manifold"),
-        };
+        let (genus, genus_is) = self.genus();
         let keys = [
             ("vertices", json!(self.vertices)),
             ("edges", json!(self.edges)),

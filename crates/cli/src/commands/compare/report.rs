@@ -15,6 +15,7 @@ use crate::commands::coloring::color_by_distance;
 use crate::failure::Failure;
 use crate::output::{Output, stage};
 use crate::session::Session;
+use crate::soundness::Soundness;
 
 pub(crate) const INDEX: &str = "index.html";
 const TABLE: &str = "distances.csv";
@@ -173,19 +174,24 @@ fn shapes(html: &mut String, subjects: &[Subject], drawn: &[Drawn]) {
     html.push_str(
         "<table><tr><th>shape</th><th>format</th><th>elements</th><th>diagonal</th><th>area</th><th>volume</th>",
     );
-    // Topology (closed, components, genus) has its columns here.
+    html.push_str("<th>closed</th><th>components</th><th>genus</th>");
     html.push_str("<th>error of tessellation</th></tr>\n");
     for subject in subjects {
         let number = |value: Option<f64>| value.map_or("&ndash;".to_owned(), short);
+        let topology =
+            subject.soundness.as_ref().map_or(std::array::from_fn(|_| "&ndash;".to_owned()), Soundness::brief);
         let _ = writeln!(
             html,
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
             escaped(&subject.name),
             subject.format,
             subject.simplices.triangles.len(),
             short(subject.simplices.bounds().diagonal()),
             number(subject.area()),
             number(subject.volume()),
+            topology[0],
+            topology[1],
+            topology[2],
             escaped(&subject.deviation.to_string())
         );
     }

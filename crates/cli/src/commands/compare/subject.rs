@@ -5,9 +5,9 @@ use std::path::Path;
 use serde_json::{Map, Value, json};
 use shapeloom_convert::{Job, convert_shape, plan};
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Category, Deviation, Exec, Findings, Place, Reservation, Severity};
+use shapeloom_core::{Category, Convert, Deviation, Exec, Findings, Place, Reservation, Severity};
 use shapeloom_judge::Simplices;
-use shapeloom_mesh::TriMesh;
+use shapeloom_mesh::{TriMesh, Weld};
 use shapeloom_shape::{Geometry, Kind, Part, Shape, UpAxis};
 
 use crate::account;
@@ -17,6 +17,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::session::Session;
 use crate::settings::Settings;
+use crate::soundness::Soundness;
 
 /// What can be compared without being converted, triangles first.
 const KINDS: [Kind; 4] = [Kind::TriMesh, Kind::Polyline, Kind::GeometricGraph, Kind::PointCloud];
@@ -35,6 +36,8 @@ pub(crate) struct Subject {
     area: f64,
     /// None where there is no enclosed volume.
     volume: Option<f64>,
+    /// What the judge says of the surfaces, vertices at one place taken as one.
+    pub(crate) soundness: Option<Soundness>,
     pub(crate) findings: Findings,
     _memory: Reservation,
 }
@@ -90,6 +93,7 @@ impl Subject {
             kinds,
             area: 0.0,
             volume: None,
+            soundness: None,
             findings: input.read.findings,
             shape: conversion.shape,
             _memory: memory,
@@ -107,6 +111,12 @@ impl Subject {
             let Geometry::TriMesh(mesh) = &*placed else { continue };
             surfaces = true;
             self.area += mesh.area();
+            let welded = Weld::new().convert_with(mesh, exec)?.value;
+            let found = Soundness::of(&welded, exec, &mut Findings::default())?;
+            self.soundness = Some(match self.soundness.take() {
+                Some(before) => before.with(&found),
+                None => found,
+            });
             let whole = is_cycle(mesh, exec)?;
             volume = volume.filter(|_| whole).map(|volume| volume + mesh.volume());
         }
@@ -145,9 +155,13 @@ impl Subject {
         self.volume.filter(|volume| volume.is_finite())
     }
 
-    /// What is known of the shape alone. Columns of its topology (closed, components, genus) belong here.
+    /// What is known of the shape alone.
     pub(crate) fn account(&self) -> Map<String, Value> {
         let bounds = self.simplices.bounds();
+        let mut object = Map::new();
+        if let Some(soundness) = &self.soundness {
+            soundness.tell(&mut object);
+        }
         let value = json!({
             "name": self.name,
             "format": self.format,
@@ -160,10 +174,10 @@ impl Subject {
             "deviation": account::deviation(self.deviation),
             "findings": account::findings(&self.findings),
         });
-        match value {
-            Value::Object(object) => object,
-            _ => Map::new(),
+        if let Value::Object(own) = value {
+            object.extend(own);
         }
+        object
     }
 }
 
