@@ -4,7 +4,9 @@
 //! arithmetic. Every answer that says "no" comes with a witness: the elements that show it.
 
 mod check;
+mod cycle;
 mod distance;
+mod equal_positions;
 mod error;
 mod faces;
 mod measures;

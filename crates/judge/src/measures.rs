@@ -7,6 +7,7 @@ use shapeloom_core::glam::{DVec2, DVec3};
 use shapeloom_core::predicates::orient2d;
 use shapeloom_mesh::{PolyMesh, TriMesh};
 
+use crate::equal_positions::equal_positions;
 use crate::{JudgeError, MeshRef, Scaled};
 
 /// The sizes of a mesh and the elements that have none.
@@ -143,27 +144,11 @@ fn collinear([a, b, c]: [DVec3; 3]) -> Result<bool, usize> {
 }
 
 fn coincident(positions: &[DVec3], exec: &Exec) -> Result<Vec<[u32; 2]>, JudgeError> {
-    let _memory = exec.reserve_elements(positions.len() as u64, 24)?;
-    // Adding zero turns −0 into 0.
-    let bits = |vertex: u32| (positions[vertex as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
-    let key = |vertex: u32| {
-        bits(vertex).into_iter().fold(0u64, |hash, word| {
-            let mixed = (hash ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            mixed ^ mixed >> 32
-        })
-    };
-    let mut keyed: Vec<(u64, u32)> = (0..positions.len() as u32).map(|vertex| (key(vertex), vertex)).collect();
-    keyed.sort_unstable();
+    let _memory = exec.reserve_elements(positions.len() as u64, 32)?;
+    let first = equal_positions(positions);
     exec.check()?;
-    let mut found = Vec::new();
-    for run in keyed.chunk_by_mut(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
-        run.sort_unstable_by_key(|&(_, vertex)| (bits(vertex), vertex));
-        for equal in run.chunk_by(|a, b| bits(a.1) == bits(b.1)) {
-            found.extend(equal[1..].iter().map(|&(_, vertex)| [equal[0].1, vertex]));
-        }
-    }
-    found.sort_unstable_by_key(|&[_, later]| later);
-    Ok(found)
+    let later = first.iter().enumerate().filter(|&(vertex, &first)| vertex as u32 != first);
+    Ok(later.map(|(vertex, &first)| [first, vertex as u32]).collect())
 }
 
 #[cfg(test)]

@@ -4,10 +4,11 @@ use shapeloom_core::{Convert, ConvertError, Exec, OverBudget, Reservation, Stop}
 use shapeloom_mesh::{Column, Domain, PolyMesh, TriangulatePolygons, Values};
 use shapeloom_spatial::BvhError;
 
-use super::equal_faces::{Groups, equal_positions};
+use super::equal_faces::Groups;
 use super::search::each_meeting;
 use super::tally::{Tally, add_equal_faces};
 use super::{PairKind, SelfIntersections};
+use crate::equal_positions::equal_positions;
 use crate::{JudgeError, Scaled};
 
 /// Finds every two polygons of a mesh that meet in more than the corners and the sides that they share.

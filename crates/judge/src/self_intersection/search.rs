@@ -6,11 +6,12 @@ use shapeloom_core::{Exec, Stop};
 use shapeloom_mesh::TriMesh;
 use shapeloom_spatial::BoxPairs;
 
-use super::equal_faces::{Groups, equal_positions};
+use super::equal_faces::Groups;
 use super::pair::meeting;
 use super::tally::{Tally, add_equal_faces};
 use super::triangle::{Points, Triangle};
 use super::{FacePair, PairKind, SelfIntersections};
+use crate::equal_positions::equal_positions;
 use crate::{JudgeError, Scaled};
 
 /// Finds every two triangles of a mesh that meet in more than the corners and the side that they share, exactly: by signs
