@@ -127,3 +127,24 @@ fn the_page_tells_every_rule() {
         assert!(page.contains(&line), "the page lacks: {line}");
     }
 }
+
+#[test]
+fn parts_that_cross_each_other_are_found_together() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let cube = |at: f64, base: usize| {
+        let corner = |i: usize| {
+            format!("v {} {} {}\n", at + (i & 1) as f64, at / 2.0 + (i >> 1 & 1) as f64, at / 4.0 + (i >> 2) as f64)
+        };
+        let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let face = |face: &[usize; 4]| format!("f {}\n", face.map(|corner| (base + corner + 1).to_string()).join(" "));
+        (0..8).map(corner).chain(faces.iter().map(face)).collect::<String>()
+    };
+    let text = format!("o a\n{}o b\n{}", cube(0.0, 0), cube(0.5, 8));
+    let path = write(&folder, "two.obj", &text);
+    assert_eq!(run(&["check", &path]).code, 0);
+    let together = run(&["check", &path, "--together", "--json"]);
+    let object = together.json();
+    assert_eq!((together.code, codes(&object["parts"][0]["findings"])), (1, vec!["W-check-crossing".to_owned()]));
+    assert_eq!((&object["parts"][0]["together"], &object["parts"][0]["faces"]), (&2.into(), &12.into()));
+    assert_eq!(run(&["check", &path, "--together", "--weld"]).code, 1);
+}

@@ -167,6 +167,9 @@ pub(crate) struct CheckArguments {
     /// Merge vertices at exactly the same position first, as files without shared vertices need it
     #[arg(long)]
     pub(crate) weld: bool,
+    /// Judge all parts as one mesh, so that parts that cross each other are found; faces and vertices are numbered on
+    #[arg(long)]
+    pub(crate) together: bool,
     #[command(flatten)]
     pub(crate) way: WayArguments,
     #[command(flatten)]

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use shapeloom_convert::{Job, convert_shape, plan};
 use shapeloom_core::{Category, ChoiceOption, Convert, Exec, Findings, Place};
 use shapeloom_judge::{MeshRef, NotPolyhedron, PairKind, Profile, Verdict};
-use shapeloom_mesh::{TriMesh, TriangulatePolygons, Weld};
+use shapeloom_mesh::{PolyMesh, TriMesh, TriangulatePolygons, Weld};
 use shapeloom_shape::{Geometry, Kind, Shape};
 
 use super::convert::{absolute, wish};
@@ -29,36 +29,9 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
     let job = Job { wish, tolerance, settings: settings.others };
     session.stage("checking");
-    let mut parts = Vec::new();
-    let (mut words, mut sound, mut checked) = (Vec::new(), true, 0);
-    for (index, part) in input.read.shape.parts.iter().enumerate() {
-        let named = match part.name.is_empty() {
-            true => format!("part {index}"),
-            false => format!("part {index} \"{}\"", part.name),
-        };
-        let Some(Meshed { mesh, remark }) = meshed(&input.read.shape, index, &job, arguments.weld, &session.exec())?
-        else {
-            words.push(format!("{named}: a {} has no faces, and was not checked", part.geometry.kind()));
-            continue;
-        };
-        checked += 1;
-        let exec = session.exec();
-        let (verdict, mut object) = match &*mesh {
-            Geometry::TriMesh(mesh) => judged(mesh, profile, &exec)?,
-            Geometry::PolyMesh(mesh) => judged(mesh, profile, &exec)?,
-            _ => continue,
-        };
-        sound &= verdict.findings.is_empty();
-        object.insert("part".into(), json!(index));
-        object.insert("name".into(), json!(part.name));
-        object.insert("kind".into(), json!(part.geometry.kind().name()));
-        words.extend(remark.map(|remark| format!("{named}: {remark}")));
-        for finding in &verdict.findings {
-            words.push(format!("{named}: {}", told(finding, session.globals.verbose)));
-        }
-        parts.push(Value::Object(object));
-    }
-    if checked == 0 {
+    let mut words = Vec::new();
+    let subjects = subjects(&input.read.shape, &job, arguments, &session.exec(), &mut words)?;
+    if subjects.is_empty() {
         let kinds: Vec<&str> = input.read.shape.kinds().into_iter().map(Kind::name).collect();
         let found = if kinds.is_empty() { "nothing".to_owned() } else { kinds.join(", ") };
         return Err(Failure::Own {
@@ -67,6 +40,22 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
             message: format!("check: found {found}, expected something with a surface"),
             advice: None,
         });
+    }
+    let (mut parts, mut sound) = (Vec::new(), true);
+    for subject in &subjects {
+        let exec = session.exec();
+        let (verdict, mut object) = match &*subject.mesh {
+            Geometry::TriMesh(mesh) => judged(mesh, profile, &exec)?,
+            Geometry::PolyMesh(mesh) => judged(mesh, profile, &exec)?,
+            _ => continue,
+        };
+        sound &= verdict.findings.is_empty();
+        object.extend(subject.keys.clone());
+        words.extend(subject.remark.iter().map(|remark| format!("{}: {remark}", subject.named)));
+        for finding in &verdict.findings {
+            words.push(format!("{}: {}", subject.named, told(finding, session.globals.verbose)));
+        }
+        parts.push(Value::Object(object));
     }
     if session.globals.json {
         session.print_json(&json!({
@@ -86,40 +75,112 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
     if sound { Ok(()) } else { Err(Failure::Found) }
 }
 
-/// A part as a mesh where it is placed.
-struct Meshed {
+/// A mesh to be judged.
+struct Subject {
+    named: String,
+    keys: Map<String, Value>,
     mesh: Arc<Geometry>,
-    /// What was done to it for that.
+    /// What was done to it.
     remark: Option<String>,
 }
 
-/// Makes a part a mesh; none where it has no faces.
-fn meshed(shape: &Shape, index: usize, job: &Job, weld: bool, exec: &Exec) -> Result<Option<Meshed>, Failure> {
+/// The parts that have faces, or all of them as one; what has none is said.
+fn subjects(
+    shape: &Shape,
+    job: &Job,
+    arguments: &CheckArguments,
+    exec: &Exec,
+    words: &mut Vec<String>,
+) -> Result<Vec<Subject>, Failure> {
+    let mut found = Vec::new();
+    for (index, part) in shape.parts.iter().enumerate() {
+        let named = match part.name.is_empty() {
+            true => format!("part {index}"),
+            false => format!("part {index} \"{}\"", part.name),
+        };
+        let kind = part.geometry.kind();
+        let Some((mesh, remark)) = meshed(shape, index, job, exec)? else {
+            words.push(format!("{named}: a {kind} has no faces, and was not checked"));
+            continue;
+        };
+        let keys = [("part", json!(index)), ("name", json!(part.name)), ("kind", json!(kind.name()))];
+        let keys = keys.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
+        found.push(Subject { named, keys, mesh, remark });
+    }
+    if arguments.together && found.len() > 1 {
+        let named = format!("{} parts together", found.len());
+        let keys = Map::from_iter([("together".to_owned(), json!(found.len()))]);
+        let mesh = Arc::new(joined(&found, exec)?);
+        found = vec![Subject { named, keys, mesh, remark: None }];
+    }
+    if arguments.weld {
+        for subject in &mut found {
+            let merged = weld(subject, exec)?;
+            subject.remark = Some(format!("{merged} vertices were merged with others at the same position"));
+        }
+    }
+    Ok(found)
+}
+
+/// One mesh of all, numbered on from one to the next.
+fn joined(subjects: &[Subject], exec: &Exec) -> Result<Geometry, Failure> {
+    let bytes: u64 = subjects.iter().map(|subject| subject.mesh.memory_bytes() as u64).sum();
+    let _memory = exec.reserve(2 * bytes)?;
+    let (mut positions, mut starts, mut corners) = (Vec::new(), vec![0], Vec::new());
+    for subject in subjects {
+        let first = positions.len() as u32;
+        let mut add = |face: &[u32]| {
+            corners.extend(face.iter().map(|corner| first.wrapping_add(*corner)));
+            starts.push(corners.len() as u32);
+        };
+        match &*subject.mesh {
+            Geometry::TriMesh(mesh) => {
+                mesh.triangles().iter().for_each(|face| add(face));
+                positions.extend_from_slice(mesh.positions());
+            }
+            Geometry::PolyMesh(mesh) => {
+                mesh.faces().for_each(add);
+                positions.extend_from_slice(mesh.positions());
+            }
+            _ => {}
+        }
+    }
+    // More corners than numbers are refused here.
+    let polygons = PolyMesh::try_new(positions, starts, corners)?;
+    Ok(match TriMesh::try_from(polygons.clone()) {
+        Ok(triangles) => triangles.into(),
+        Err(_) => polygons.into(),
+    })
+}
+
+/// Merges vertices at the same position, and returns how many went.
+fn weld(subject: &mut Subject, exec: &Exec) -> Result<usize, Failure> {
+    let triangles: Cow<'_, TriMesh> = match &*subject.mesh {
+        Geometry::TriMesh(mesh) => Cow::Borrowed(mesh),
+        Geometry::PolyMesh(mesh) => Cow::Owned(TriangulatePolygons::new().convert_with(mesh, exec)?.value),
+        _ => return Ok(0),
+    };
+    let welded = Weld::new().convert_with(&*triangles, exec)?.value;
+    let merged = triangles.positions().len() - welded.positions().len();
+    subject.mesh = Arc::new(welded.into());
+    Ok(merged)
+}
+
+/// A part as a mesh where it is placed, and what was done to it for that; none where it has no faces.
+type Meshed = (Arc<Geometry>, Option<String>);
+
+fn meshed(shape: &Shape, index: usize, job: &Job, exec: &Exec) -> Result<Option<Meshed>, Failure> {
     let part = &shape.parts[index];
-    let mut remark = None;
-    let mut mesh = match part.geometry.kind() {
-        Kind::TriMesh | Kind::PolyMesh => part.placed(),
-        kind if plan(kind, &job.wish).is_err() => return Ok(None),
+    match part.geometry.kind() {
+        Kind::TriMesh | Kind::PolyMesh => Ok(Some((part.placed(), None))),
+        kind if plan(kind, &job.wish).is_err() => Ok(None),
         kind => {
             let alone = Shape { parts: vec![part.clone()], ..shape.clone() };
             let conversion = convert_shape(&alone, job, exec)?;
-            remark = Some(format!("the {kind} is judged as triangles, error {}", conversion.deviation));
-            let Some(part) = conversion.shape.parts.first() else { return Ok(None) };
-            part.placed()
+            let remark = format!("the {kind} is judged as triangles, error {}", conversion.deviation);
+            Ok(conversion.shape.parts.first().map(|part| (part.placed(), Some(remark))))
         }
-    };
-    if weld {
-        let triangles: Cow<'_, TriMesh> = match &*mesh {
-            Geometry::TriMesh(mesh) => Cow::Borrowed(mesh),
-            Geometry::PolyMesh(mesh) => Cow::Owned(TriangulatePolygons::new().convert_with(mesh, exec)?.value),
-            _ => return Ok(None),
-        };
-        let welded = Weld::new().convert_with(&*triangles, exec)?.value;
-        let merged = triangles.positions().len() - welded.positions().len();
-        remark = Some(format!("{merged} vertices were merged with others at the same position"));
-        mesh = Arc::new(welded.into());
     }
-    Ok(Some(Meshed { mesh, remark }))
 }
 
 fn judged<'a>(
