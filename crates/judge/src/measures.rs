@@ -198,6 +198,12 @@ mod tests {
             let found = Measures::of(&triangle(third), &Exec::default()).unwrap();
             assert_eq!(!found.flat_faces.is_empty(), flat, "{third}");
         }
+        // On a line through the origin, where the differences round.
+        for k in 1..200 {
+            let p = DVec3::new(0.1, 0.7, 0.3) * f64::from(k);
+            let mesh = TriMesh::try_new(vec![p, p * 2.0, p * 4.0], vec![[0, 1, 2]]).unwrap();
+            assert_eq!(Measures::of(&mesh, &Exec::default()).unwrap().flat_faces, [0], "{k}");
+        }
         let positions = (0..5).map(|i| DVec3::new(f64::from(i % 3), f64::from(i / 4), 0.0)).collect();
         let polygons = PolyMesh::from_faces(positions, &[&[0, 1, 2, 3][..], &[0, 0, 0], &[0, 1, 2, 4]]).unwrap();
         assert_eq!(Measures::of(&polygons, &Exec::default()).unwrap().flat_faces, [0, 1]);

@@ -211,6 +211,14 @@ mod tests {
         assert!(report(&straight, true).is_convex());
         let line = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]];
         assert!(report(&line, true).not_simple.is_some() && report(&line, false).is_simple());
+        // Open ones whose last side goes back on the one before, by less and by more.
+        for end in [1.0, 3.0] {
+            let back = [[4.0, 9.0, 0.0], [0.0, 0.0, 1.0], [2.0, 2.0, 0.0], [2.0 - end, 2.0 - end, end / 2.0]];
+            assert!(report(&back, false).not_simple.is_some_and(|sides| sides[1] == 2), "{end}");
+            let mut first = back;
+            first.reverse();
+            assert!(report(&first, false).not_simple.is_some_and(|sides| sides[0] == 0), "{end}");
+        }
     }
 
     #[test]

@@ -220,9 +220,25 @@ mod tests {
                         off += 1;
                     }
                     Location::On(triangle) => {
-                        let [a, b, c] = mesh.corners(triangle as usize);
-                        let normal = (b - a).cross(c - a);
-                        assert_eq!(normal.dot(point - a), 0.0);
+                        let holds = |triangle: &usize| {
+                            // Whole numbers: the point is on the plane and on the inner side of every side, or on a side.
+                            let corners = mesh.corners(*triangle);
+                            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+                            let sides = [0, 1, 2].map(|k| [corners[k], corners[(k + 1) % 3]]);
+                            let inner = |[a, b]: &[DVec3; 2]| normal.dot((*b - *a).cross(point - *a)) >= 0.0;
+                            let along = |[a, b]: &[DVec3; 2]| {
+                                (*b - *a).cross(point - *a) == DVec3::ZERO && (point - *a).dot(point - *b) <= 0.0
+                            };
+                            let inside = normal != DVec3::ZERO
+                                && normal.dot(point - corners[0]) == 0.0
+                                && sides.iter().all(inner);
+                            inside || sides.iter().any(along)
+                        };
+                        assert_eq!(
+                            (0..mesh.triangles().len()).find(holds),
+                            Some(triangle as usize),
+                            "{point} {mesh:?}"
+                        );
                         on += 1;
                     }
                 }

@@ -45,6 +45,10 @@ fn sound_meshes_are_found_sound() {
     let apart = cubes(&[(DVec3::ZERO, 1.0, false), (DVec3::X * 3.0, 1.0, false)]);
     // A solid in a cavity of another.
     let nested = cubes(&[(DVec3::ZERO, 9.0, false), (DVec3::ONE, 7.0, true), (DVec3::splat(2.0), 2.0, false)]);
+    // A cavity whose first vertex lies on the outer shell.
+    let touching = cubes(&[(DVec3::ZERO, 4.0, false), (DVec3::new(0.0, 1.0, 1.0), 1.0, true)]);
+    let verdict = Verdict::of(&touching, Profile::General, &Exec::default()).unwrap();
+    assert_eq!(verdict.shells.iter().map(|shell| shell.depth).collect::<Vec<_>>(), [0, 1]);
     for profile in [Profile::General, Profile::Print, Profile::Simulation] {
         assert!(codes(&cube(), profile).is_empty() && codes(&polygons, profile).is_empty());
         assert!(codes(&cavity, profile).is_empty() && codes(&apart, profile).is_empty());
@@ -98,6 +102,12 @@ fn each_defect_has_its_finding() {
     let contact = cubes(&[(DVec3::ZERO, 1.0, false), (DVec3::X, 1.0, false)]);
     assert!(general(&contact).is_empty());
     assert!(codes(&contact, Profile::Simulation).contains(&"W-check-contact"));
+    let partly = cubes(&[(DVec3::ZERO, 1.0, false), (DVec3::new(1.0, 0.5, 0.25), 1.0, false)]);
+    assert!(general(&partly).is_empty() && codes(&partly, Profile::Simulation) == ["W-check-contact"]);
+    // A fin without thickness: neighbours folded onto each other.
+    let positions = vec![DVec3::ZERO, DVec3::X * 4.0, DVec3::new(1.0, 3.0, 0.0), DVec3::new(2.0, 2.0, 0.0)];
+    let fin = TriMesh::try_new(positions, vec![[0, 1, 2], [1, 0, 3]]).unwrap();
+    assert_eq!(general(&fin), ["W-check-open", "W-check-overlap"]);
     let sliver = edited(|positions, _| positions[7].z = 1e-3);
     assert!(codes(&sliver, Profile::Simulation).contains(&"W-check-sliver"));
     let flat = edited(|_, triangles| triangles.push([0, 1, 0]));
@@ -153,6 +163,8 @@ fn a_klein_bottle_is_not_orientable_and_crosses_itself() {
     assert_eq!(verdict.topology.crosscaps(), Some(2));
     assert!(verdict.self_intersections.crosses());
     assert!(matches!(verdict.polyhedron(), Err(NotPolyhedron::Meeting(_))));
+    // Of what does not turn alike no volume is asked.
+    assert!(!codes(&klein, Profile::Print).contains(&"W-check-volume"));
 }
 
 #[test]

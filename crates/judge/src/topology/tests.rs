@@ -122,6 +122,20 @@ fn assert_by_definition(vertices: usize, faces: &[Vec<u32>]) {
     assert_eq!(found.components.len(), distinct(&parts));
     let firsts: BTreeSet<u32> = parts.iter().map(|&first| first as u32).collect();
     assert!(found.components.iter().map(|component| component.first_face).eq(firsts));
+    for component in &found.components {
+        let own = |face: usize| parts[face] == component.first_face as usize;
+        let corners: BTreeSet<u32> =
+            (0..faces.len()).filter(|&face| own(face)).flat_map(|face| faces[face].clone()).collect();
+        let edges = uses.values().filter(|uses| own(uses[0].0)).count();
+        let count = (0..faces.len()).filter(|&face| own(face)).count();
+        assert_eq!(component.euler_characteristic, corners.len() as i64 - edges as i64 + count as i64);
+        assert_eq!(component.faces as usize, count);
+        assert!(
+            (0..faces.len()).filter(|&face| own(face)).all(|face| {
+                found.components[found.face_components[face] as usize].first_face == component.first_face
+            })
+        );
+    }
     // Orientation, by trying every way to turn faces over.
     let pairs: Vec<&Vec<(usize, [u32; 2])>> = uses.values().filter(|uses| uses.len() == 2).collect();
     let fits = |turned: usize| {
