@@ -27,6 +27,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-compare-count", "A shape has more vertices than 32-bit ids can tell apart."),
     ("E-compare-empty", "A file holds nothing that has a distance: no surface, lines or points."),
     ("E-distance-empty", "A shape without triangles, segments or points has no distance from anything."),
+    (
+        "E-distance-sample",
+        "A sample of a shape has a position that is not finite, or a weight, a radius or a distance to the other shape that is negative or not finite. The message names the sample by its number.",
+    ),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),

@@ -45,14 +45,19 @@ pub struct Measured {
 impl Measured {
     /// The chamfer distance: the mean of both directed mean distances.
     pub fn chamfer(&self) -> f64 {
-        self.a_to_b.mean.value.midpoint(self.b_to_a.mean.value)
+        chamfer(&self.a_to_b, &self.b_to_a)[0]
     }
 
     /// The chamfer distance of squares: the mean of both directed mean squared distances.
     pub fn chamfer_squared(&self) -> f64 {
-        let [there, back] = [&self.a_to_b, &self.b_to_a].map(|way| way.rms.value * way.rms.value);
-        there.midpoint(back)
+        chamfer(&self.a_to_b, &self.b_to_a)[1]
     }
+}
+
+/// The mean of both means, and of both mean squares.
+pub(super) fn chamfer(there: &MeanDistance, back: &MeanDistance) -> [f64; 2] {
+    let [there_squared, back_squared] = [there, back].map(|way| way.rms.value * way.rms.value);
+    [there.mean.value.midpoint(back.mean.value), there_squared.midpoint(back_squared)]
 }
 
 impl Distances {

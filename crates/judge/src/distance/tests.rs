@@ -363,13 +363,13 @@ fn samples_of_anything_can_be_compared() {
     let bvh = TriangleBvh::build(&positions, &triangles, &Exec::default()).unwrap();
     let sample = |z: f64, weight: f64, radius: f64| Sample { position: DVec3::new(0.5, 0.5, z), weight, radius };
     let samples = [sample(1.0, 3.0, 0.25), sample(3.0, 1.0, 0.0)];
-    let found = distance_from_samples(&samples, &bvh, &Exec::default()).unwrap().unwrap();
+    let found = distance_from_samples(&samples[..], &bvh, &Exec::default()).unwrap().unwrap();
     assert!((found.mean.value - 1.5).abs() < 1e-15 && (found.rms.value - 3f64.sqrt()).abs() < 1e-15);
     assert!((found.mean.lower - 1.3125).abs() < 1e-12 && (found.mean.upper - 1.6875).abs() < 1e-12);
     assert_eq!((found.largest_sampled, found.samples), (3.0, 2));
-    assert_eq!(distance_from_samples(&[], &bvh, &Exec::default()), Ok(None));
+    assert_eq!(distance_from_samples(&[][..], &bvh, &Exec::default()), Ok(None));
     let nothing = TriangleBvh::build(&[], &[], &Exec::default()).unwrap();
-    assert_eq!(distance_from_samples(&samples, &nothing, &Exec::default()), Ok(None));
+    assert_eq!(distance_from_samples(&samples[..], &nothing, &Exec::default()), Ok(None));
 }
 
 #[test]
