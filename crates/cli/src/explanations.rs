@@ -155,6 +155,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-check-volume", "A closed surface encloses a volume of 0 or less, so there is nothing to print."),
     (
+        "W-compare-size",
+        "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
+    ),
+    (
         "W-info-open",
         "The surface has a border, or faces that share an edge do not turn alike, so it encloses no volume: the number given is the signed volume of the cones from the faces to the centre of the bounding box, and changes with that centre.",
     ),
@@ -170,7 +174,6 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-compare-open",
         "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
     ),
-    ("W-compare-overflow", "The area or volume of a shape is beyond the largest number and is left out."),
     (
         "W-patch-degenerate",
         "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",
