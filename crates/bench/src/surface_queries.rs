@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use shapeloom_core::Aabb;
 use shapeloom_core::glam::DVec3;
-use shapeloom_mesh::TriMesh;
+use shapeloom_core::{Aabb, Convert};
+use shapeloom_mesh::{TriMesh, TriangulatePolygons};
 use shapeloom_shape::Geometry;
 
 use crate::{Setting, files};
@@ -26,7 +26,7 @@ pub(crate) fn load(setting: &Setting) -> Result<(Arc<TriMesh>, [Queries; 2]), St
     let mesh = match &*part.geometry {
         Geometry::TriMesh(mesh) => Arc::new(mesh.clone()),
         Geometry::PolyMesh(mesh) => {
-            Arc::new(TriMesh::try_from(mesh.clone()).map_err(|error| format!("{name}: {error}"))?)
+            Arc::new(TriangulatePolygons::new().convert(mesh).map_err(|error| format!("{name}: {error}"))?.value)
         }
         _ => return Err(format!("{name}: found no mesh")),
     };
