@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use shapeloom_core::Aabb;
+use shapeloom_core::Aabb;
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::TriMesh;
 

@@ -79,5 +79,7 @@ mod tests {
         triangles.remove(0);
         assert!(!closed(&positions, &triangles));
         assert!(closed(&[], &[]));
+        // As many edges rise as fall, but not the same.
+        assert!(!closed(&positions, &[[0, 1, 2], [3, 5, 4]]));
     }
 }

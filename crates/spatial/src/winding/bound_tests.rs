@@ -90,6 +90,24 @@ fn no_cluster_is_wrong_by_more_than_its_bound() {
     assert!(tightest > 0.1, "the bound is never within a factor of ten: {tightest}");
 }
 
+/// A thousand radii away truncation is nothing: what is left is the single precision of the moments.
+#[test]
+fn rounding_is_held_where_truncation_is_nothing() {
+    let mut draws = Draws::new(12);
+    let mut beyond_truncation = 0;
+    for _ in 0..200 {
+        let triangles = clusters(&mut draws, 0);
+        let cluster = Cluster::of_triangles(&triangles);
+        let query = cluster.center + draws.point().normalize() * (1000.0 * cluster.radius);
+        let (out, _) = Node::of(&[cluster]).far_within(query.into(), query.abs().max_element(), f64::INFINITY);
+        let error = (out[0][0] - exact(&triangles, query)).abs();
+        // The reference itself is wrong by a few 1e-16.
+        assert!(error <= out[1][0] + out[2][0] + 1e-15, "{error} {out:?}");
+        beyond_truncation += u32::from(error > 2.0 * out[1][0] + 1e-15);
+    }
+    assert!(beyond_truncation > 50, "{beyond_truncation}");
+}
+
 /// A tiny triangle that looks along its offset from a far centre comes close to what the bound allows.
 #[test]
 fn the_bound_is_nearly_reached() {
