@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use shapeloom_core::Aabb;
-use shapeloom_core::Aabb;
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::TriMesh;
 
