@@ -221,6 +221,7 @@ fn why_not(why: NotPolyhedron) -> String {
         NotPolyhedron::Edge([a, b]) => format!("{} has not two faces", Place::edge(a, b)),
         NotPolyhedron::Vertex(vertex) => format!("the faces at vertex {vertex} are not one fan"),
         NotPolyhedron::Apart([a, b]) => format!("{} are not joined", Place::pair("faces", a, b)),
+        NotPolyhedron::Doubled([a, b]) => format!("{} lie in one place", Place::pair("vertices", a, b)),
         NotPolyhedron::Meeting([a, b]) => format!("{} meet", Place::pair("faces", a, b)),
     }
 }
