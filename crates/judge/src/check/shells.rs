@@ -67,10 +67,10 @@ pub(super) fn shells(mesh: &TriMesh, topology: &Topology, exec: &Exec) -> Result
             };
         });
     };
-    for component in 0..topology.components.len() {
-        let Some(own) = number[component] else { continue };
+    let numbered = number.iter().enumerate().filter_map(|(component, own)| Some((component as u32, (*own)?)));
+    for (component, own) in numbered {
         exec.check()?;
-        let faces = members.of(component as u32);
+        let faces = members.of(component);
         around(solid.position(triangles[faces[0] as usize][0]), &mut met);
         // What crosses another is not in it: a shell in another has its box in the other's.
         let held = |other: usize| {

@@ -54,8 +54,7 @@ pub fn self_intersections_of_polygons(
     add_equal_faces(&mut tally, &groups, turned, exec)?;
     let mut found = Found::new(exec);
     each_meeting(
-        &positions,
-        &corners,
+        (&positions, &corners),
         256,
         exec,
         |a, b| owners[a as usize] != owners[b as usize],

@@ -54,8 +54,7 @@ pub fn self_intersections(mesh: &TriMesh, limit: usize, exec: &Exec) -> Result<S
     let mut tally = Tally::new(limit, exec);
     add_equal_faces(&mut tally, &groups, turned, exec)?;
     each_meeting(
-        &positions,
-        &corners,
+        (&positions, &corners),
         parts(limit),
         exec,
         |_, _| true,
@@ -74,8 +73,7 @@ fn parts(limit: usize) -> usize {
 
 /// Calls `visit` for every two triangles that are `wanted` and meet. The corners have equal numbers where their positions are equal.
 pub(super) fn each_meeting<T: Send>(
-    positions: &[DVec3],
-    corners: &[[u32; 3]],
+    (positions, corners): (&[DVec3], &[[u32; 3]]),
     parts: usize,
     exec: &Exec,
     wanted: impl Fn(u32, u32) -> bool + Sync,

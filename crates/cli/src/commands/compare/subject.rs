@@ -112,7 +112,7 @@ impl Subject {
             surfaces = true;
             self.area += mesh.area();
             let welded = Weld::new().convert_with(mesh, exec)?.value;
-            let found = Soundness::of(&welded, exec, &mut Findings::default())?;
+            let (found, _) = Soundness::of(&welded, exec, &mut Findings::default())?;
             self.soundness = Some(match self.soundness.take() {
                 Some(before) => before.with(&found),
                 None => found,
