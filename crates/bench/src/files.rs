@@ -22,7 +22,8 @@ fn inputs(setting: &Setting) -> Result<Vec<PathBuf>, String> {
     Ok(found)
 }
 
-fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), String> {
+/// A file's shape, its format and its length in bytes.
+pub(crate) fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), String> {
     let name = path.display().to_string();
     let said = |error: &dyn std::fmt::Display| format!("{name}: {error}");
     let file = std::fs::File::open(path).map_err(|error| said(&error))?;

@@ -3,8 +3,11 @@
 //! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
+mod closest;
 mod files;
 mod measure;
+mod queries;
+mod rays;
 mod table;
 mod tessellate;
 
@@ -50,11 +53,15 @@ pub enum Task {
     Read,
     /// The same mesh to every format, in memory.
     Write,
+    /// A hierarchy over blob_1m.ply, and the rays of rays_random.f32 and rays_camera.f32 (else of a formula) on it.
+    Rays,
+    /// Closest points of blob_1m.ply to qry_surface.f32 and every tenth of qry_box.f32 (else to points of a formula).
+    Closest,
 }
 
 impl Task {
     /// Every task.
-    pub const ALL: [Self; 3] = [Self::Tessellate, Self::Read, Self::Write];
+    pub const ALL: [Self; 5] = [Self::Tessellate, Self::Read, Self::Write, Self::Rays, Self::Closest];
 
     /// The name on the command line.
     pub fn name(self) -> &'static str {
@@ -62,17 +69,31 @@ impl Task {
             Self::Tessellate => "tessellate",
             Self::Read => "read",
             Self::Write => "write",
+            Self::Rays => "rays",
+            Self::Closest => "closest",
         }
     }
 }
 
 impl Task {
-    /// What peers call the same work on the same input.
-    pub(crate) fn peer_task(self, input: &str) -> String {
-        let extension = input.rsplit('.').next().unwrap_or_default();
+    /// What peers call the same work on the same input; some have a name for each way to run it.
+    pub(crate) fn peer_tasks(self, input: &str) -> Vec<String> {
+        let last = |separator: [char; 2]| input.rsplit(separator).next().unwrap_or_default();
+        let names = |task: &str, ways: &[&str]| ways.iter().map(|way| format!("{task}{way}")).collect();
         match self {
-            Self::Read => format!("m.read_1m_{extension}"),
-            Self::Tessellate | Self::Write => String::new(),
+            Self::Read => vec![format!("m.read_1m_{}", last(['.', '.']))],
+            Self::Rays => match input.rsplit(": ").next().unwrap_or_default() {
+                "build" => names("j.rays.build_", &["bvh", "aabb"]),
+                "random first" => names("j.rays.random", &["", "_t1", "_tall"]),
+                "camera first" => names("j.rays.camera", &["", "_t1", "_tall"]),
+                "random any" => names("j.rays.any_random", &["_t1", "_tall"]),
+                _ => Vec::new(),
+            },
+            Self::Closest => {
+                let size = if last([':', ' ']) == "near" { "near_1m" } else { "box_100k" };
+                names(&format!("j.closest_{size}"), &[".query", ".build+query", ".t1", ".tall"])
+            }
+            Self::Tessellate | Self::Write => Vec::new(),
         }
     }
 }
@@ -109,6 +130,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
         Task::Read => files::read_files(&setting),
         Task::Write => files::write_files(&setting),
+        Task::Rays => rays::run(&setting),
+        Task::Closest => closest::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);
