@@ -17,17 +17,22 @@
 //! # Ok::<(), shapeloom_spatial::BvhError>(())
 //! ```
 
+mod batch_order;
 mod closest_point;
 mod equal_triangles;
 mod error;
 #[cfg(test)]
 mod fixtures;
 mod hierarchy;
+#[cfg(test)]
+mod leak_tests;
 mod rays;
 mod stack;
+mod triangle_block;
 mod triangle_bvh;
 mod triangle_point;
 mod triangle_ray;
+mod wide_node;
 
 pub use error::BvhError;
 pub use triangle_bvh::TriangleBvh;
