@@ -92,6 +92,9 @@ pub(crate) struct Slabs {
     early: [f32; 3],
     late: [f32; 3],
     inverse: [f32; 3],
+    /// A little larger, so that rounding makes no box end before it begins: three roundings on either side (Ize: Robust BVH
+    /// Ray Traversal, JCGT 2013), and one of this.
+    inverse_late: [f32; 3],
     /// Which side of a box is met first, by axis.
     near: [usize; 3],
     /// How far coordinates along the ray can be off.
@@ -121,6 +124,7 @@ impl Slabs {
             early: [0.0; 3],
             late: [0.0; 3],
             inverse: [0.0; 3],
+            inverse_late: [0.0; 3],
             near: [0; 3],
             slack,
             start,
@@ -131,6 +135,7 @@ impl Slabs {
             let sign = if backward { -1.0 } else { 1.0 };
             // A direction of less than 1e-18 moves nothing within the shape; a finite inverse keeps NaN away.
             slabs.inverse[axis] = if lost { 1e-30 } else { (sign / direction[axis].abs().max(1e-18)) as f32 };
+            slabs.inverse_late[axis] = slabs.inverse[axis] * (1.0 + 1e-6);
             slabs.near[axis] = usize::from(backward);
             slabs.early[axis] = (from[axis] + sign * slack).clamp(-2e18, 2e18) as f32;
             slabs.late[axis] = (from[axis] - sign * slack).clamp(-2e18, 2e18) as f32;
@@ -170,22 +175,22 @@ impl Slabs {
     /// Where the ray enters each box of a node, and how long it may stay there, negative where it does not meet it.
     #[inline(always)]
     fn stretch(&self, node: &Node, limit: f32) -> (Lanes, Lanes) {
-        let mut entry = [0f32; WIDTH];
-        let mut exit = [limit; WIDTH];
+        let (mut begin, mut end) = ([[0f32; WIDTH]; 3], [[0f32; WIDTH]; 3]);
         for axis in 0..3 {
             let near = self.near[axis] & 1;
             let first = &node.sides[near][axis];
             let last = &node.sides[1 - near][axis];
-            let (early, late, inverse) = (self.early[axis], self.late[axis], self.inverse[axis]);
             for lane in 0..WIDTH {
-                entry[lane] = larger((first[lane] - early) * inverse, entry[lane]);
-                exit[lane] = smaller((last[lane] - late) * inverse, exit[lane]);
+                begin[axis][lane] = (first[lane] - self.early[axis]) * self.inverse[axis];
+                end[axis][lane] = (last[lane] - self.late[axis]) * self.inverse_late[axis];
             }
         }
-        let mut room = [0f32; WIDTH];
+        let (mut entry, mut room) = ([0f32; WIDTH], [0f32; WIDTH]);
         for lane in 0..WIDTH {
-            // Ize: Robust BVH Ray Traversal, JCGT 2013: three roundings on either side.
-            room[lane] = exit[lane] * (1.0 + 1e-6) - entry[lane];
+            // In pairs, so that no step waits for more than one before.
+            entry[lane] = larger(larger(begin[0][lane], begin[1][lane]), larger(begin[2][lane], 0.0));
+            let exit = smaller(smaller(end[0][lane], end[1][lane]), smaller(end[2][lane], limit));
+            room[lane] = exit - entry[lane];
         }
         (entry, room)
     }
