@@ -20,7 +20,12 @@ fn every_task_prints_lines_of_json() {
         let code = shapeloom_bench::run(words.map(Into::into), &mut out, &mut err);
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
         let lines = String::from_utf8(out).expect("UTF-8");
-        assert_eq!(lines.lines().count(), if task == Task::Tessellate { 1 } else { 5 }, "{lines}");
+        let expected = match task {
+            Task::Tessellate => 1,
+            Task::Read | Task::Write | Task::Rays => 5,
+            Task::Closest => 2,
+        };
+        assert_eq!(lines.lines().count(), expected, "{lines}");
         for line in lines.lines() {
             let found: serde_json::Value = serde_json::from_str(line).expect("JSON");
             assert_eq!(found["task"], task.name());
@@ -41,6 +46,8 @@ fn wrong_words_and_missing_inputs_are_told() {
     assert_eq!(run(&["shapeloom-bench", "dance"]).0, 2);
     let (code, err) = run(&["shapeloom-bench", "tessellate", "--data", "nowhere"]);
     assert!(code == 2 && err.contains("nowhere"), "{err}");
-    let (code, err) = run(&["shapeloom-bench", "read", "--data", "nowhere"]);
-    assert!(code == 2 && err.contains("blob_1m"), "{err}");
+    for task in ["read", "rays", "closest"] {
+        let (code, err) = run(&["shapeloom-bench", task, "--data", "nowhere"]);
+        assert!(code == 2 && err.contains("blob_1m"), "{err}");
+    }
 }

@@ -64,6 +64,11 @@ impl Groups {
         self.leaders.as_ref().map_or(self.count as usize, Vec::len)
     }
 
+    /// Memory that is held.
+    pub fn bytes(&self) -> usize {
+        self.leaders.as_ref().map_or(0, Vec::len) * size_of::<u32>() + self.twins.capacity() * size_of::<(u32, u32)>()
+    }
+
     /// The smallest element of a group.
     pub fn leader(&self, group: usize) -> u32 {
         self.leaders.as_ref().map_or(group as u32, |leaders| leaders[group])

@@ -52,8 +52,6 @@ impl Hierarchy {
     /// Memory that [`Hierarchy::build`] needs for a primitive while it runs: the builder's nodes (48 bytes, five
     /// times), its sort keys and parents, and ours.
     pub const BUILD_BYTES: usize = 400;
-    /// Memory of nodes, in bytes a primitive: at worst one node for each seven leaves of one primitive.
-    pub const BYTES: usize = 48;
 
     /// A tree over boxes in local units (coordinates of magnitude about 1).
     ///
