@@ -47,13 +47,8 @@ impl Shear {
         if direction[z] < 0.0 {
             std::mem::swap(&mut x, &mut y);
         }
-        let along = direction[z];
-        Self {
-            origin,
-            axes: [x, y, z],
-            slope: DVec2::new(direction[x] / along, direction[y] / along),
-            stretch: 1.0 / along,
-        }
+        let stretch = 1.0 / direction[z];
+        Self { origin, axes: [x, y, z], slope: DVec2::new(direction[x], direction[y]) * stretch, stretch }
     }
 
     #[inline(always)]

@@ -92,8 +92,8 @@ pub(crate) struct Slabs {
     early: [f32; 3],
     late: [f32; 3],
     inverse: [f32; 3],
-    /// A little larger, so that rounding makes no box end before it begins: three roundings on either side (Ize: Robust BVH
-    /// Ray Traversal, JCGT 2013), and one of this.
+    /// A little larger, so that rounding makes no box end before it begins: four roundings on either side (Ize: Robust
+    /// BVH Ray Traversal, JCGT 2013), and one of this; 2^-24 each.
     inverse_late: [f32; 3],
     /// Which side of a box is met first, by axis.
     near: [usize; 3],
@@ -132,13 +132,13 @@ impl Slabs {
         };
         for axis in 0..3 {
             let backward = direction[axis] < 0.0 && !lost;
-            let sign = if backward { -1.0 } else { 1.0 };
+            let sign = if backward { -1.0f32 } else { 1.0 };
             // A direction of less than 1e-18 moves nothing within the shape; a finite inverse keeps NaN away.
-            slabs.inverse[axis] = if lost { 1e-30 } else { (sign / direction[axis].abs().max(1e-18)) as f32 };
-            slabs.inverse_late[axis] = slabs.inverse[axis] * (1.0 + 1e-6);
+            slabs.inverse[axis] = if lost { 1e-30 } else { sign / larger(direction[axis].abs() as f32, 1e-18) };
+            slabs.inverse_late[axis] = slabs.inverse[axis] * (1.0 + 1.5e-6);
             slabs.near[axis] = usize::from(backward);
-            slabs.early[axis] = (from[axis] + sign * slack).clamp(-2e18, 2e18) as f32;
-            slabs.late[axis] = (from[axis] - sign * slack).clamp(-2e18, 2e18) as f32;
+            slabs.early[axis] = (from[axis] + f64::from(sign) * slack).clamp(-2e18, 2e18) as f32;
+            slabs.late[axis] = (from[axis] - f64::from(sign) * slack).clamp(-2e18, 2e18) as f32;
         }
         slabs
     }
