@@ -78,8 +78,8 @@ fn cases() -> Vec<Case> {
     vec![closed, open, flipped, duplicated, degenerate, offset, tiny, huge, one, Case::new("soup", soup)]
 }
 
-/// The first hit is the nearest of all, `any_hit` tells whether there is one, hits lie within reach and on their element,
-/// batches agree with single queries to the bit.
+/// The first hit is the nearest of all, `any_hit` tells whether there is one, hits lie within reach and on their
+/// element, batches agree with single queries to the bit.
 fn ray_laws(case: &Case, shape: &dyn Rays, rays: &[Ray]) -> usize {
     let name = case.name;
     let (mut batch, mut any) = (vec![None; rays.len()], vec![true; rays.len()]);
@@ -110,8 +110,8 @@ fn ray_laws(case: &Case, shape: &dyn Rays, rays: &[Ray]) -> usize {
     count
 }
 
-/// No sampled point is closer than the answer, the answer lies on its element and that far away, `closest_within` honours
-/// the bound, between equal distances the smallest element counts, batches agree with single queries to the bit.
+/// No sampled point is closer than the answer, the answer lies on its element and that far away, `closest_within`
+/// honours the bound, between equal distances the smallest element counts, batches agree with single queries to the bit.
 fn closest_laws(case: &Case, shape: &dyn ClosestPoint, queries: &[DVec3]) {
     let name = case.name;
     let mut batch = vec![None; queries.len()];

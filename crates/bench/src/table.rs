@@ -45,7 +45,12 @@ fn peers(tasks: &[String], lines: &str) -> Result<Vec<Peer>, String> {
             continue;
         }
         if let (Some(cpu), Some(wall)) = (line["cpu_s"].as_f64(), line["wall_s"].as_f64()) {
-            found.push(Peer { name: format!("{} {}", text("peer"), text("version")), cpu, wall });
+            let threads = match text("task").rsplit(['.', '_']).next() {
+                Some("t1") => ", one thread",
+                Some("tall") => ", all threads",
+                _ => "",
+            };
+            found.push(Peer { name: format!("{} {}{threads}", text("peer"), text("version")), cpu, wall });
         }
     }
     Ok(found)

@@ -15,7 +15,7 @@ use crate::triangle_block::{Block, RoughPlace};
 use crate::triangle_point::{Foot, closest_on_triangle};
 use crate::wide_node::{Lanes, Node, Signs, WIDTH, lanes_of, signs};
 
-/// A child to be opened: a squared distance to its box, never too large, and what [`Node::first`] and [`Node::place`] say.
+/// A child to be opened: a squared distance to its box, never too large, and what its node says in `first` and `place`.
 type Open = (f32, u32, u32);
 
 fn stack() -> Stack<Open> {
@@ -36,8 +36,8 @@ impl Best {
     }
 }
 
-/// The closest point whose squared distance is at most `max_distance²`, by a walk that opens near boxes first. The answer
-/// does not depend on `guess`, a triangle to start with; the better it is, the fewer boxes are opened.
+/// The closest point whose squared distance is at most `max_distance²`, by a walk that opens near boxes first. The
+/// answer does not depend on `guess`, a triangle to start with; the better it is, the fewer boxes are opened.
 #[inline(always)]
 fn closest(
     bvh: &TriangleBvh,
@@ -194,8 +194,8 @@ impl ClosestPoint for TriangleBvh {
         out[0]
     }
 
-    /// The closest point to each query, in parallel. Queries are taken along a space-filling curve, each starting with the
-    /// triangle that is closest to the one before; the answers stand in the order of the queries.
+    /// The closest point to each query, in parallel. Queries are taken along a space-filling curve, each starting with
+    /// the triangle that is closest to the one before; the answers stand in the order of the queries.
     fn closest_points(&self, queries: &[DVec3], out: &mut [Option<Closest>], exec: &Exec) -> Result<(), Stop> {
         let keys = |queries: &[DVec3], keys: &mut [u64]| {
             queries.iter().zip(keys).for_each(|(&query, key)| *key = along_curve(query, &self.units));
