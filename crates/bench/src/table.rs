@@ -20,7 +20,7 @@ pub(crate) fn markdown(task: Task, outcomes: &[Outcome], lines: &str) -> Result<
     for outcome in outcomes {
         let ours = format!("{:.4} ({:.4})", outcome.times.cpu, outcome.times.wall);
         let name = outcome.input.rsplit('/').next().unwrap_or_default();
-        let mut peers = peers(&task.peer_task(&outcome.input), lines)?;
+        let mut peers = peers(&task.peer_tasks(&outcome.input), lines)?;
         peers.sort_by(|a, b| a.cpu.total_cmp(&b.cpu));
         if peers.is_empty() {
             table += &format!("| {} {name} | {ours} | | | |\n", task.name());
@@ -36,16 +36,21 @@ pub(crate) fn markdown(task: Task, outcomes: &[Outcome], lines: &str) -> Result<
     Ok(table)
 }
 
-fn peers(task: &str, lines: &str) -> Result<Vec<Peer>, String> {
+fn peers(tasks: &[String], lines: &str) -> Result<Vec<Peer>, String> {
     let mut found = Vec::new();
     for (number, line) in lines.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let line: Value = serde_json::from_str(line).map_err(|error| format!("line {}: {error}", number + 1))?;
         let text = |key: &str| line[key].as_str().unwrap_or_default().to_owned();
-        if text("task") != task {
+        if !tasks.contains(&text("task")) {
             continue;
         }
         if let (Some(cpu), Some(wall)) = (line["cpu_s"].as_f64(), line["wall_s"].as_f64()) {
-            found.push(Peer { name: format!("{} {}", text("peer"), text("version")), cpu, wall });
+            let threads = match text("task").rsplit(['.', '_']).next() {
+                Some("t1") => ", one thread",
+                Some("tall") => ", all threads",
+                _ => "",
+            };
+            found.push(Peer { name: format!("{} {}{threads}", text("peer"), text("version")), cpu, wall });
         }
     }
     Ok(found)
