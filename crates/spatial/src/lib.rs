@@ -36,6 +36,7 @@ mod triangle_ray;
 mod winding;
 
 pub use box_pairs::BoxPairs;
+pub use closed::is_closed;
 pub use error::BvhError;
 pub use signed_distance::{InsideRule, SignedClosest, SignedDistance};
 pub use triangle_bvh::TriangleBvh;

@@ -48,8 +48,8 @@ pub(crate) fn beyond_horizon(triangles: usize) -> WindingNumber {
 /// the value is therefore the mean over a small ball: 1/2 inside a face of a closed mesh, the share of the interior
 /// angle on an edge or corner. A query that is not finite has the value NaN.
 ///
-/// The bound holds every rounding error: about 1e-15 a triangle, growing with the size of a triangle over the query's
-/// distance to its border. Cost: O(n), some tens of nanoseconds a triangle.
+/// The bound holds every rounding error, with the limit that [`WindingNumber::bound`] names: about 1e-15 a triangle,
+/// growing with the size of a triangle over the query's distance to its border. Cost: O(n), some tens of nanoseconds a triangle.
 ///
 /// # Errors
 /// An index out of range, a corner that is not finite, more than `u32::MAX - 1` triangles, or the reason to stop.
