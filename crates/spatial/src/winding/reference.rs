@@ -120,8 +120,8 @@ pub(crate) fn turns_of(corners: &[DVec3; 3], query: DVec3) -> (f64, f64) {
 /// The vector times a power of two that brings its largest coordinate to between 1 and 2; zero stays zero.
 fn of_size_one(v: DVec3) -> DVec3 {
     let largest = v.abs().max_element();
-    // The power's inverse would be beyond the numbers.
-    let v = if largest < 2f64.powi(-500) { v * 2f64.powi(600) } else { v };
+    // Subnormal numbers have no exponent of their own.
+    let v = if largest < f64::MIN_POSITIVE { v * 2f64.powi(100) } else { v };
     let largest = v.abs().max_element();
     if largest == 0.0 {
         return v;
