@@ -106,14 +106,16 @@ impl Task {
                 let size = if last([':', ' ']) == "near" { "near_1m" } else { "box_100k" };
                 names(&format!("j.closest_{size}"), &[".query", ".build+query", ".t1", ".tall"])
             }
-            // Peers write both tasks under one name, each with its own ending.
-            Self::Winding if input.contains("qry_surface") => names("j.signed_near_1m", &[".build+winding"]),
-            Self::Winding => names("j.signed_box_100k", &[".build+winding"]),
-            Self::SignedDistance if input.contains("qry_surface") => {
-                names("j.closest_near_1m", &[".signed", ".signed_tall"])
+            Self::SelfIntersection => vec!["j.self_intersection".into()],
+            Self::Winding | Self::SignedDistance => {
+                let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
+                match self {
+                    Self::Winding => vec![format!("j.signed_{points}.build+winding")],
+                    // Not those that build too: here the clock starts after that.
+                    _ => names(&format!("j.closest_{points}"), &[".signed_tall", ".signed"]),
+                }
             }
-            Self::SignedDistance => names("j.closest_box_100k", &[".signed", ".signed_tall"]),
-            Self::Tessellate | Self::Write | Self::Topology | Self::SelfIntersection | Self::Hausdorff => Vec::new(),
+            Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff => Vec::new(),
         }
     }
 }

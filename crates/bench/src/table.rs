@@ -77,4 +77,31 @@ mod tests {
         assert!(rows[1].contains("slow 1") && rows.len() == 2);
         assert!(markdown(Task::Read, &[], "nonsense").is_ok());
     }
+
+    #[test]
+    fn winding_numbers_and_signed_distances_are_set_beside_their_own() {
+        let outcome = |file: &str| Outcome {
+            input: file.into(),
+            times: Times { wall: 1.0, cpu: 1.0 },
+            figures: Default::default(),
+        };
+        let names = [
+            "j.signed_near_1m.build+winding",
+            "j.signed_near_1m.build+signed",
+            "j.closest_near_1m.signed_tall",
+            "j.closest_near_1m.tall",
+            "j.signed_box_100k.build+winding",
+            "j.closest_box_100k.signed",
+        ];
+        let line = |name: &&str| {
+            format!("{{\"task\":\"{name}\",\"peer\":\"{name}\",\"version\":\"1\",\"wall_s\":2,\"cpu_s\":2}}\n")
+        };
+        let lines: String = names.iter().map(line).collect();
+        let files = ["a/qry_surface.f32", "a/qry_box.f32"].map(outcome);
+        for (task, wanted) in [(Task::Winding, [names[0], names[4]]), (Task::SignedDistance, [names[2], names[5]])] {
+            let table = markdown(task, &files, &lines).unwrap();
+            let rows: Vec<&str> = table.lines().skip(2).collect();
+            assert!(rows.len() == 2 && rows.iter().zip(wanted).all(|(row, name)| row.contains(name)), "{table}");
+        }
+    }
 }

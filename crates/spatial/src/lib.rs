@@ -41,6 +41,7 @@ mod wide_node;
 mod winding;
 
 pub use box_pairs::BoxPairs;
+pub use closed::is_closed;
 pub use error::BvhError;
 pub use signed_distance::{InsideRule, SignedClosest, SignedDistance};
 pub use triangle_bvh::TriangleBvh;
