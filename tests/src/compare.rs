@@ -35,6 +35,11 @@ fn files(folder: &Path) -> Vec<String> {
     names
 }
 
+fn found_codes(shape: &Value) -> Vec<&str> {
+    let findings = shape["findings"].as_array().expect("findings");
+    findings.iter().map(|finding| finding["code"].as_str().expect("a code")).collect()
+}
+
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -105,6 +110,20 @@ fn exit_codes_say_whether_a_limit_is_kept() {
         assert!(text.contains(says), "{limit}: {text}");
         assert!(!outcome.err.contains("error"), "{}", outcome.err);
     }
+    // The bounds and the limit are told apart.
+    let text = String::from_utf8(run(&["compare", &a, &b, "--fail-above", "0.25"]).out).expect("words");
+    let (low, rest) = text.split_once("from ").and_then(|(_, rest)| rest.split_once(" to ")).expect("bounds");
+    let high = rest.split_whitespace().next().expect("a bound");
+    let [low, high] = [low, high].map(|bound| bound.parse::<f64>().expect("a number"));
+    assert!(low < 0.25 && high > 0.25, "{text}");
+    // Identical shapes keep the limit 0.
+    for (other, code, says) in [(&a, 0, "within the limit of 0"), (&b, 1, "above the limit of 0")] {
+        for limit in ["0", "0%"] {
+            let outcome = run(&["compare", &a, other, "--fail-above", limit]);
+            let text = String::from_utf8_lossy(&outcome.out).into_owned();
+            assert!(outcome.code == code && text.contains(says), "{limit}: {text} {}", outcome.err);
+        }
+    }
     let json = run(&["compare", &a, &b, "--fail-above", "0.2", "--json"]);
     assert_eq!((json.code, json.json()["verdict"].as_str()), (1, Some("above")));
     let json = run(&["compare", &a, &a, "--fail-above", "1e-300", "--json"]);
@@ -143,7 +162,21 @@ fn empty_and_open_shapes_are_named() {
     let huge = folder.with("huge.off", &cube([0.0; 3], 1e160));
     let found = run(&["compare", &huge, &huge, "--json"]).json();
     assert!(found["a"]["area"].is_null() && found["hausdorff"]["upper"] == 0.0, "{found}");
-    assert_eq!(found["a"]["findings"][0]["code"], "W-compare-overflow");
+    assert_eq!(found["a"]["findings"][0]["code"], "W-compare-size");
+    // What vanishes is no 0, as info says too.
+    let tiny = folder.with("tiny.off", &cube([0.0; 3], 1e-170));
+    let found = run(&["compare", &tiny, &tiny, "--json"]).json();
+    assert!(found["a"]["area"].is_null() && found["a"]["volume"].is_null(), "{found}");
+    assert_eq!(found["a"]["findings"][0]["code"], "W-compare-size");
+    assert!(run(&["info", &tiny, "--json"]).json()["area"].is_null());
+    // Sizes whose squares are numbers and whose cubes are none.
+    for size in [1e-120, 1e120] {
+        let between = folder.with("between.off", &cube([0.0; 3], size));
+        let found = run(&["compare", &between, &between, "--json"]).json();
+        assert!((number(&found["a"]["area"]) / size / size - 6.0).abs() < 1e-12, "{found}");
+        assert!(found["a"]["volume"].is_null() && found["a"]["findings"][0]["code"] == "W-compare-size", "{found}");
+    }
+    assert_eq!(found_codes(&run(&["compare", &a, &open, "--json"]).json()["b"]), ["W-compare-open"]);
     let nan = folder.with("nan.off", "OFF\n3 1 0\nnan 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
     let outcome = run(&["compare", &a, &nan]);
     assert_eq!(outcome.code, 3, "{}", outcome.err);
@@ -180,6 +213,18 @@ fn patches_points_and_turned_shapes_are_compared() {
     let slack = number(&found["error_of_tessellation"]);
     assert!(slack > 0.0 && slack <= 1e-3 * diagonal, "{slack}");
     assert!(upper > slack && upper < 0.012 * diagonal, "{upper} {diagonal}");
+    // The report says the same numbers, the error of tessellation within.
+    let report = folder.path("report");
+    assert_eq!(run(&["-q", "compare", &teapot, &glb, "--report", &report]).code, 0);
+    let read = |name: &str| fs::read_to_string(Path::new(&report).join(name)).expect("a file");
+    let (table, page) = (read("distances.csv"), read("index.html"));
+    for (row, way) in table.lines().skip(1).zip(["a_to_b", "b_to_a"]) {
+        let cells: Vec<f64> = row.rsplit(',').skip(2).take(3).map(|cell| cell.parse().expect("a number")).collect();
+        let bounds = &found[way]["hausdorff"];
+        assert_eq!(cells, [&bounds["upper"], &bounds["lower"], &found[way]["max"]].map(number), "{row}");
+        let shown = format!("{:.5e}", number(&bounds["upper"])).parse::<f64>().expect("a number");
+        assert!(page.contains(&format!("<td>{shown}</td></tr>")), "{way}: {shown}");
+    }
     let inner = &found["hausdorff"]["of_triangles"];
     assert!(number(&inner["upper"]) < upper && number(&found["hausdorff"]["lower"]) < number(&inner["lower"]));
     // A cloud of the corners of a cube: the middles of its sides are farthest from them.

@@ -27,6 +27,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-compare-count", "A shape has more vertices than 32-bit ids can tell apart."),
     ("E-compare-empty", "A file holds nothing that has a distance: no surface, lines or points."),
     ("E-distance-empty", "A shape without triangles, segments or points has no distance from anything."),
+    (
+        "E-distance-sample",
+        "A sample of a shape has a position that is not finite, or a weight, a radius or a distance to the other shape that is negative or not finite. The message names the sample by its number.",
+    ),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
@@ -151,6 +155,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-check-volume", "A closed surface encloses a volume of 0 or less, so there is nothing to print."),
     (
+        "W-compare-size",
+        "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
+    ),
+    (
         "W-info-open",
         "The surface has a border, or faces that share an edge do not turn alike, so it encloses no volume: the number given is the signed volume of the cones from the faces to the centre of the bounding box, and changes with that centre.",
     ),
@@ -166,7 +174,6 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-compare-open",
         "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
     ),
-    ("W-compare-overflow", "The area or volume of a shape is beyond the largest number and is left out."),
     (
         "W-patch-degenerate",
         "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",

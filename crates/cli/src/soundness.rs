@@ -127,6 +127,16 @@ impl Soundness {
         }
     }
 
+    /// The area; none where it is beyond the numbers or vanishes.
+    pub(crate) fn area(&self) -> Option<f64> {
+        self.area
+    }
+
+    /// The volume of the cones under the faces; none as the area.
+    pub(crate) fn volume(&self) -> Option<f64> {
+        self.volume
+    }
+
     fn is_oriented(&self) -> bool {
         self.inconsistent_edges == 0
     }

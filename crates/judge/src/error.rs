@@ -35,6 +35,15 @@ pub enum JudgeError {
         /// 0 for the first shape, 1 for the second.
         shape: usize,
     },
+    /// A sample of a shape that stands for nothing.
+    Sample {
+        /// Its number.
+        sample: u64,
+        /// What is wrong with it: its position, weight, radius, or the distance of its closest point.
+        name: &'static str,
+        /// The number as given.
+        found: f64,
+    },
     /// An option out of range.
     OutOfBounds {
         /// The option.
@@ -91,6 +100,14 @@ impl fmt::Display for JudgeError {
                 let which = if *shape == 0 { "first" } else { "second" };
                 write!(f, "distance: the {which} shape: found nothing, expected a triangle, segment or point")
             }
+            Self::Sample { sample, name: name @ "position", found } => {
+                write!(f, "distance: sample {sample}: {name}: found {}, expected finite coordinates", Words(*found))
+            }
+            Self::Sample { sample, name, found } => write!(
+                f,
+                "distance: sample {sample}: {name}: found {}, expected a finite number that is not negative",
+                Words(*found)
+            ),
             Self::OutOfBounds { name, found, bounds } => {
                 write!(f, "judge: option {name}: found {}, expected {bounds}", Words(*found))
             }
@@ -119,6 +136,7 @@ impl Diagnostic for JudgeError {
             Self::Underflow { .. } => "E-judge-underflow",
             Self::Query { .. } => "E-judge-query",
             Self::NothingToCompare { .. } => "E-distance-empty",
+            Self::Sample { .. } => "E-distance-sample",
             Self::OutOfBounds { .. } => "E-option-range",
             Self::Bvh(error) => error.code(),
             Self::OverBudget(error) => error.code(),
@@ -132,6 +150,7 @@ impl Diagnostic for JudgeError {
             Self::Underflow { .. } => Category::Unsupported,
             Self::Query { .. } => Category::Usage,
             Self::NothingToCompare { .. } => Category::Unsupported,
+            Self::Sample { .. } => Category::Malformed,
             Self::OutOfBounds { .. } => Category::Usage,
             Self::Bvh(error) => error.category(),
             Self::OverBudget(error) => error.category(),
@@ -144,7 +163,7 @@ impl Diagnostic for JudgeError {
             Self::NotFinite { .. } => Some("leave such vertices out with --drop-non-finite".into()),
             Self::Underflow { .. } => Some("set coordinates that small to 0".into()),
             Self::Query { .. } => None,
-            Self::NothingToCompare { .. } | Self::OutOfBounds { .. } => None,
+            Self::NothingToCompare { .. } | Self::Sample { .. } | Self::OutOfBounds { .. } => None,
             Self::Bvh(error) => error.advice(),
             Self::OverBudget(error) => error.advice(),
             Self::Stop(stop) => stop.advice(),

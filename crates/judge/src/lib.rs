@@ -23,8 +23,8 @@ mod union_find;
 
 pub use check::{NotPolyhedron, Profile, RULES, Rule, Shell, Verdict};
 pub use distance::{
-    DirectedHausdorff, Distances, Estimate, Hausdorff, MeanDistance, Measured, Sample, Simplices, Witness,
-    distance_from_samples,
+    DirectedHausdorff, Distances, Estimate, Hausdorff, MeanDistance, MeanDistances, Measured, Sample, Sampled, Samples,
+    SimplexCells, Simplices, Witness, distance_from_samples, distances_from_samples,
 };
 pub use error::JudgeError;
 pub use faces::Faces;

@@ -43,6 +43,7 @@ pub use crate::image::Image;
 pub use color_map::sequential_color;
 pub use error::RenderError;
 pub use picture::{Backdrop, Mode, Picture};
+pub use refine::Refinement;
 pub use scene::{Scene, SceneMesh};
 pub use shape_scene::scene_of_shape;
 pub use views::{camera_from, sensible_camera, turntable};

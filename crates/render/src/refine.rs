@@ -1,53 +1,115 @@
 //! Finer triangles for finer colours.
 
 use shapeloom_core::glam::DVec3;
+use shapeloom_core::{Exec, Stop};
 
-use crate::SceneMesh;
+use crate::{Scene, SceneMesh};
 
 /// A side is divided into this many parts at most.
 const MOST_PARTS: u32 = 256;
 
-impl SceneMesh {
-    /// The same surface in triangles whose sides are no longer than `edge_length`, as far as that takes no more than
-    /// about `most` triangles and 256 parts a side, so that colours of vertices can vary within a large triangle.
-    /// Normals and the sides that are drawn are those of the triangles that were there; colours are dropped, and each
-    /// triangle has corners of its own.
-    #[must_use]
-    pub fn refined(&self, edge_length: f64, most: usize) -> Self {
-        let corners = |triangle: &[u32; 3]| triangle.map(|corner| self.positions[corner as usize]);
-        let parts_at = |edge_length: f64, triangle: &[u32; 3]| {
-            let [a, b, c] = corners(triangle);
-            let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-            // NaN and infinity give one part.
-            let parts = (longest / edge_length).ceil();
-            if parts.is_finite() { (parts as u32).clamp(1, MOST_PARTS) } else { 1 }
-        };
-        let count = |edge_length: f64| -> usize {
-            self.triangles.iter().map(|triangle| parts_at(edge_length, triangle).pow(2) as usize).sum()
-        };
-        let longest = self.triangles.iter().map(|triangle| {
-            let [a, b, c] = corners(triangle);
-            a.distance(b).max(b.distance(c)).max(c.distance(a))
-        });
-        let longest = longest.fold(0.0, f64::max);
-        let mut edge_length =
-            if edge_length.is_nan() { longest } else { edge_length.max(longest / f64::from(MOST_PARTS)) };
-        while edge_length < longest && count(edge_length) > most.max(self.triangles.len()) {
-            edge_length *= 1.25;
+/// How finely the surfaces of a scene are divided, and how much they become in all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// No side of a triangle is longer.
+    pub edge_length: f64,
+    /// The triangles of all surfaces.
+    pub triangles: u64,
+    /// Their positions: each triangle that was there has corners of its own.
+    pub positions: u64,
+}
+
+impl Scene {
+    /// The refinement with sides no longer than `edge_length`, as far as that takes no more than `most` triangles in all,
+    /// or one each, and 256 parts a side. An edge length that is no number divides nothing.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    pub fn refinement(&self, edge_length: f64, most: u64, exec: &Exec) -> Result<Refinement, Stop> {
+        let mut longest = 0.0f64;
+        for surface in &self.surfaces {
+            for triangles in surface.triangles.chunks(BATCH) {
+                exec.check()?;
+                longest = triangles.iter().map(|triangle| surface.longest(triangle)).fold(longest, f64::max);
+            }
         }
+        let edge_length = if edge_length.is_nan() { longest } else { edge_length.max(longest / f64::from(MOST_PARTS)) };
+        let mut found = self.refined_to(edge_length, exec)?;
+        while found.edge_length < longest && found.triangles > most {
+            found = self.refined_to(found.edge_length * 1.25, exec)?;
+        }
+        Ok(found)
+    }
+
+    fn refined_to(&self, edge_length: f64, exec: &Exec) -> Result<Refinement, Stop> {
+        let mut found = Refinement { edge_length, triangles: 0, positions: 0 };
+        for surface in &self.surfaces {
+            let [triangles, positions] = surface.refined_size(edge_length, exec)?;
+            found.triangles += triangles;
+            found.positions += positions;
+        }
+        Ok(found)
+    }
+}
+
+/// Triangles between looks at whether to stop.
+const BATCH: usize = 1 << 14;
+
+impl SceneMesh {
+    /// The same surface in triangles whose sides are no longer than `edge_length`, as far as 256 parts a side do, so that
+    /// colours of vertices can vary within a large triangle. Normals and the sides that are drawn are those of the
+    /// triangles that were there; colours are dropped, and each triangle has corners of its own.
+    ///
+    /// [`Scene::refinement`] says how large all surfaces become, so that memory can be reserved.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    pub fn refined(&self, edge_length: f64, exec: &Exec) -> Result<Self, Stop> {
+        let [triangles, positions] = self.refined_size(edge_length, exec)?.map(|count| count as usize);
         let mut fine = Self {
-            normals: self.normals.as_ref().map(|_| Vec::new()),
-            edges: Some(Vec::new()),
-            ..Self::new(vec![], vec![])
+            normals: self.normals.as_ref().map(|_| Vec::with_capacity(3 * triangles)),
+            edges: Some(Vec::with_capacity(triangles)),
+            color: self.color,
+            ..Self::new(Vec::with_capacity(positions), Vec::with_capacity(triangles))
         };
-        fine.color = self.color;
+        let mut next = BATCH;
         for (index, triangle) in self.triangles.iter().enumerate() {
-            let parts = parts_at(edge_length, triangle);
+            if fine.triangles.len() >= next {
+                exec.check()?;
+                next = fine.triangles.len() + BATCH;
+            }
+            let corners = triangle.map(|corner| self.positions[corner as usize]);
             let normals = self.normals.as_ref().map(|normals| [0, 1, 2].map(|corner| normals[3 * index + corner]));
             let drawn = self.edges.as_ref().map_or([true; 3], |edges| edges[index]);
-            fine.add_divided(corners(triangle), normals, drawn, parts);
+            fine.add_divided(corners, normals, drawn, self.parts(triangle, edge_length));
         }
-        fine
+        Ok(fine)
+    }
+
+    /// How many triangles and positions the refined surface has.
+    fn refined_size(&self, edge_length: f64, exec: &Exec) -> Result<[u64; 2], Stop> {
+        let [mut triangles, mut positions] = [0u64; 2];
+        for batch in self.triangles.chunks(BATCH) {
+            exec.check()?;
+            for triangle in batch {
+                let parts = u64::from(self.parts(triangle, edge_length));
+                triangles += parts * parts;
+                positions += (parts + 1) * (parts + 2) / 2;
+            }
+        }
+        Ok([triangles, positions])
+    }
+
+    fn longest(&self, triangle: &[u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    }
+
+    /// Into how many parts the sides of a triangle are divided.
+    fn parts(&self, triangle: &[u32; 3], edge_length: f64) -> u32 {
+        // NaN and infinity give one part.
+        let parts = (self.longest(triangle) / edge_length).ceil();
+        if parts.is_finite() { (parts as u32).clamp(1, MOST_PARTS) } else { 1 }
     }
 
     fn add_divided(&mut self, corners: [DVec3; 3], normals: Option<[DVec3; 3]>, drawn: [bool; 3], parts: u32) {
@@ -98,7 +160,7 @@ mod tests {
             edges: Some(vec![[true, true, false], [false, true, true]]),
             ..square()
         };
-        let fine = mesh.refined(0.5, 1000);
+        let fine = mesh.refined(0.5, &Exec::default()).unwrap();
         // Sides of 2 and a diagonal of 2.83: six parts each.
         assert_eq!((fine.triangles.len(), fine.positions.len()), (72, 56));
         let corner = |i: u32| fine.positions[i as usize];
@@ -114,12 +176,30 @@ mod tests {
     }
 
     #[test]
-    fn limits_are_kept_and_fine_meshes_stay() {
-        assert!(square().refined(1e-9, 500).triangles.len() <= 500);
-        let same = square().refined(10.0, 500);
-        assert_eq!((same.triangles.len(), same.positions.len()), (2, 6));
-        assert_eq!(square().refined(f64::NAN, 10).triangles.len(), 2);
-        assert_eq!(square().refined(0.0, 10).triangles.len(), 8);
-        assert_eq!(square().refined(f64::INFINITY, 10).triangles.len(), 2);
+    fn limits_hold_for_all_surfaces_together_and_fine_meshes_stay() {
+        let exec = Exec::default();
+        let scene = Scene { surfaces: vec![square(); 10] };
+        for (edge_length, most, triangles) in [
+            (10.0, 500, 20..=20),
+            (f64::NAN, 500, 20..=20),
+            (f64::INFINITY, 500, 20..=20),
+            (1e-9, 500, 200..=500),
+            (0.0, 5, 20..=20),
+        ] {
+            let found = scene.refinement(edge_length, most, &exec).unwrap();
+            assert!(triangles.contains(&found.triangles), "{edge_length}: {found:?}");
+            let fine: Vec<SceneMesh> =
+                scene.surfaces.iter().map(|surface| surface.refined(found.edge_length, &exec).unwrap()).collect();
+            // What is said is what comes out, with no room left over.
+            let sum = |of: &dyn Fn(&SceneMesh) -> usize| fine.iter().map(of).sum::<usize>() as u64;
+            assert_eq!(sum(&|mesh| mesh.triangles.len()), found.triangles);
+            assert_eq!(sum(&|mesh| mesh.triangles.capacity()), found.triangles);
+            assert_eq!(sum(&|mesh| mesh.positions.len()), found.positions);
+            assert_eq!(sum(&|mesh| mesh.positions.capacity()), found.positions);
+        }
+        assert_eq!(Scene { surfaces: vec![] }.refinement(1.0, 9, &exec).unwrap().triangles, 0);
+        let stopped = exec.with_watch(|| Some(Stop::Cancelled));
+        assert_eq!(square().refined(0.5, &stopped), Err(Stop::Cancelled));
+        assert_eq!(scene.refinement(0.5, 500, &stopped), Err(Stop::Cancelled));
     }
 }

@@ -1,6 +1,7 @@
 //! What the colours of a picture say.
 
 use clap::ValueEnum;
+use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ClosestPoint, Exec, Stop, parallel};
 use shapeloom_judge::Simplices;
 use shapeloom_render::{Scene, sequential_color};
@@ -19,9 +20,11 @@ pub(crate) enum ColorBy {
 }
 
 /// Triangles of a coloured picture are this part of the diagonal at most, so that colours vary within large ones, and
-/// this many at most for each surface.
+/// this many at most, over all surfaces.
 const EDGE: f64 = 1.0 / 100.0;
-const MOST: usize = 500_000;
+const MOST: u64 = 500_000;
+/// Bytes for each triangle, its indices, normals and drawn sides, and for each position, its distance and colour beside it.
+const BYTES: [u64; 2] = [12 + 72 + 3, 24 + 8 + 12];
 
 /// Colours every surface of a scene by its distance to a shape. Returns the distances that stand for the ends of the
 /// colour map: those asked for, or from 0 to the largest at a vertex.
@@ -32,17 +35,17 @@ pub(crate) fn color_by_distance(
     exec: &Exec,
 ) -> Result<(f64, f64), Failure> {
     let edge = scene.bounds().diagonal() * EDGE;
-    let most = scene.surfaces.iter().map(|surface| surface.triangles.len()).max().unwrap_or(0).max(MOST);
-    // Positions, normals, colours, indices and the flags of sides.
-    let _memory = exec.reserve_elements(most.saturating_mul(scene.surfaces.len().min(4)) as u64, 200)?;
+    let fine = scene.refinement(edge, MOST, exec)?;
+    let bytes = [fine.triangles, fine.positions].into_iter().zip(BYTES).map(|(count, each)| count.saturating_mul(each));
+    let _memory = exec.reserve(bytes.fold(0, u64::saturating_add))?;
     let bvh = TriangleBvh::build(&to.positions, &to.triangles, exec)?;
     let mut all = Vec::with_capacity(scene.surfaces.len());
     for surface in &mut scene.surfaces {
-        *surface = surface.refined(edge, MOST);
+        *surface = surface.refined(fine.edge_length, exec)?;
         let mut distances = vec![0.0f64; surface.positions.len()];
         parallel::fill_chunks(exec, &mut distances, 256, |first, part| {
             for (position, distance) in surface.positions[first..].iter().zip(part) {
-                *distance = bvh.closest(*position).map_or(f64::NAN, |closest| closest.distance_squared.sqrt());
+                *distance = bvh.closest(*position).map_or(f64::NAN, |closest| length(closest.point - *position));
             }
             Ok::<_, Stop>(())
         })?;
@@ -57,6 +60,12 @@ pub(crate) fn color_by_distance(
     Ok((from, upto))
 }
 
+/// The length of a vector of any size: squares neither overflow nor vanish.
+fn length(v: DVec3) -> f64 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 && largest.is_finite() { (v / largest).length() * largest } else { largest }
+}
+
 /// Two numbers from the smaller to the larger.
 pub(crate) fn range(text: &str) -> Result<(f64, f64), String> {
     let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
@@ -69,7 +78,6 @@ pub(crate) fn range(text: &str) -> Result<(f64, f64), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shapeloom_core::glam::DVec3;
     use shapeloom_render::SceneMesh;
 
     #[test]
@@ -84,6 +92,38 @@ mod tests {
         for (position, color) in surface.positions.iter().zip(surface.colors.as_ref().unwrap()) {
             assert_eq!(*color, sequential_color(position.length() / 4.0));
         }
+    }
+
+    #[test]
+    fn sizes_at_both_ends_have_their_distances() {
+        for size in [1e-170, 1e170] {
+            let positions = [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p * size).to_vec();
+            let mut scene = Scene { surfaces: vec![SceneMesh::new(positions, vec![[0, 1, 2]])] };
+            let to = [DVec3::Z * size * 2.0];
+            let found = color_by_distance(&mut scene, &Simplices::points(&to[..]), None, &Exec::default()).unwrap();
+            assert_eq!(found.0, 0.0);
+            assert!((found.1 / size - 5f64.sqrt()).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    /// Many large surfaces take no more than a few.
+    #[test]
+    fn one_budget_holds_for_all_surfaces() {
+        let square = |k: u32| {
+            let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
+            let positions = positions.map(|p| p + DVec3::Z * (f64::from(k) / 400.0)).to_vec();
+            SceneMesh::new(positions, vec![[0, 1, 3], [0, 3, 2]])
+        };
+        let scene = || Scene { surfaces: (0..400).map(square).collect() };
+        let origin = [DVec3::ZERO];
+        let to = Simplices::points(&origin[..]);
+        let mut colored = scene();
+        color_by_distance(&mut colored, &to, None, &Exec::default()).unwrap();
+        let count: usize = colored.surfaces.iter().map(|surface| surface.triangles.len()).sum();
+        assert!((100_000..=500_000).contains(&count), "{count}");
+        let small = Exec::default().with_memory(20_000_000);
+        assert!(color_by_distance(&mut scene(), &to, None, &small).is_err());
+        assert_eq!(small.memory_taken(), 0);
     }
 
     #[test]

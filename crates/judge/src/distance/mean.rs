@@ -4,8 +4,8 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Exec, Stop, parallel};
 
 use super::foot::distance_to_triangle;
-use super::samples::Sums;
 use super::side::{Corners, Probe, Scale, Side};
+use super::sums::Sums;
 use crate::JudgeError;
 
 /// A number with proven bounds.
@@ -32,16 +32,33 @@ pub struct MeanDistance {
     pub samples: u64,
 }
 
+impl MeanDistance {
+    /// In model units; the bounds are rounded outward.
+    pub(super) fn unscaled(self, scale: Scale) -> Self {
+        let estimate = |found: Estimate| Estimate {
+            value: scale.length(found.value),
+            lower: scale.length_down(found.lower),
+            upper: scale.length_up(found.upper),
+        };
+        Self {
+            mean: estimate(self.mean),
+            rms: estimate(self.rms),
+            largest_sampled: scale.length(self.largest_sampled),
+            samples: self.samples,
+        }
+    }
+}
+
 /// What a shape is measured by: the largest dimension that it has.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Measure {
+pub(super) enum Measure {
     Area,
     Length,
     Count,
 }
 
 impl Measure {
-    fn of(self, [a, b, c]: &[DVec3; 3]) -> f64 {
+    pub fn of(self, [a, b, c]: &[DVec3; 3]) -> f64 {
         match self {
             Self::Area => (*b - *a).cross(*c - *a).length() * 0.5,
             // The longest side is the segment itself.
@@ -50,14 +67,29 @@ impl Measure {
         }
     }
 
-    fn of_shape(from: &Side<'_>, exec: &Exec) -> Result<(Self, f64), Stop> {
+    /// The measure of a shape of so many elements, and how much of it there is.
+    pub fn of_shape(
+        count: usize,
+        corners: impl Fn(u32) -> [DVec3; 3] + Sync,
+        exec: &Exec,
+    ) -> Result<(Self, f64), Stop> {
         for measure in [Self::Area, Self::Length] {
-            let total = parallel::sum(exec, from.triangles.len(), |i| measure.of(&from.corners(i as u32)))?;
+            let total = parallel::sum(exec, count, |i| measure.of(&corners(i as u32)))?;
             if total > 0.0 {
                 return Ok((measure, total));
             }
         }
-        Ok((Self::Count, from.triangles.len() as f64))
+        Ok((Self::Count, count as f64))
+    }
+
+    /// Into how many parts an element of a size is divided, along a side, for cells of about one size.
+    pub fn parts(self, size: f64, cell: f64) -> u32 {
+        let parts = size / cell;
+        match self {
+            Self::Area => parts.sqrt().ceil().clamp(1.0, MOST_PARTS) as u32,
+            Self::Length => parts.ceil().clamp(1.0, MOST_PARTS) as u32,
+            Self::Count => 1,
+        }
     }
 }
 
@@ -74,7 +106,7 @@ pub(super) fn mean_distance(
     scale: Scale,
     exec: &Exec,
 ) -> Result<MeanDistance, JudgeError> {
-    let (measure, total) = Measure::of_shape(from, exec)?;
+    let (measure, total) = Measure::of_shape(from.triangles.len(), |i| from.corners(i), exec)?;
     let cell = total / f64::from(samples.max(1));
     let sums = parallel::map_chunks(exec, from.triangles.len(), 64, |range| {
         let mut sums = Sums::default();
@@ -86,12 +118,10 @@ pub(super) fn mean_distance(
             }
             let probes = from.triangles[triangle].map(|corner| corners.probes[corner as usize]);
             let quadrature = Quadrature { to, places, probes };
-            let parts = size / cell;
+            let parts = measure.parts(size, cell);
             match measure {
-                Measure::Area => {
-                    quadrature.triangle(size, parts.sqrt().ceil().clamp(1.0, MOST_PARTS) as u32, &mut sums)
-                }
-                Measure::Length => quadrature.segment(size, parts.ceil().clamp(1.0, MOST_PARTS) as u32, &mut sums),
+                Measure::Area => quadrature.triangle(size, parts, &mut sums),
+                Measure::Length => quadrature.segment(size, parts, &mut sums),
                 Measure::Count => quadrature.point(&mut sums),
             }
             exec.check()?;
@@ -99,18 +129,7 @@ pub(super) fn mean_distance(
         Ok::<_, Stop>(sums)
     })?;
     let total = sums.iter().fold(Sums::default(), |total, part| total.plus(part));
-    let mean = total.mean();
-    let estimate = |found: Estimate| Estimate {
-        value: scale.length(found.value),
-        lower: scale.length_down(found.lower),
-        upper: scale.length_up(found.upper),
-    };
-    Ok(MeanDistance {
-        mean: estimate(mean.mean),
-        rms: estimate(mean.rms),
-        largest_sampled: scale.length(mean.largest_sampled),
-        samples: mean.samples,
-    })
+    Ok(total.mean().unscaled(scale))
 }
 
 /// One triangle with what is known of its corners.

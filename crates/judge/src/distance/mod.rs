@@ -4,6 +4,9 @@
 //! of `a` and its distance to the nearest point of `b`. Its largest value is the directed Hausdorff distance, found by
 //! branch and bound, so that no point is overlooked; its mean comes from a quadrature with proven bounds.
 //!
+//! Shapes of any other form, such as formulas, are compared by what they can do: [`Samples`] and
+//! [`ClosestPoint`](shapeloom_core::ClosestPoint) give mean and chamfer distances by [`distances_from_samples`].
+//!
 //! ```
 //! use shapeloom_core::Exec;
 //! use shapeloom_core::glam::DVec3;
@@ -25,14 +28,19 @@ mod hausdorff;
 mod mean;
 mod measure;
 mod patchwork;
+#[cfg(test)]
+mod sample_tests;
 mod samples;
 mod side;
+mod simplex_cells;
 mod simplices;
+mod sums;
 #[cfg(test)]
 mod tests;
 
 pub use hausdorff::{DirectedHausdorff, Hausdorff, Witness};
 pub use mean::{Estimate, MeanDistance};
 pub use measure::{Distances, Measured};
-pub use samples::{Sample, distance_from_samples};
+pub use samples::{MeanDistances, Sample, Sampled, Samples, distance_from_samples, distances_from_samples};
+pub use simplex_cells::SimplexCells;
 pub use simplices::Simplices;

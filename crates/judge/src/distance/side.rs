@@ -6,8 +6,9 @@ use shapeloom_spatial::TriangleBvh;
 
 use super::Simplices;
 use super::foot::{FootError, PAD, up};
+use super::sums::times;
 use crate::JudgeError;
-use crate::scaled::exponent_of;
+use crate::scaled::{exponent_of, times_power};
 
 /// A shape in scaled units.
 pub(super) struct Side<'a> {
@@ -52,30 +53,27 @@ impl Scale {
         Self { exponent }
     }
 
-    /// In two steps, each of them a number.
-    fn factors(self, exponent: i32) -> [f64; 2] {
-        [exponent / 2, exponent - exponent / 2].map(|half| 2f64.powi(half))
+    /// The scale on which lengths are multiplied by a power of two.
+    pub fn by(exponent: i32) -> Self {
+        Self { exponent }
     }
 
-    fn scaled(self, position: DVec3) -> DVec3 {
-        let [first, second] = self.factors(self.exponent);
-        position * first * second
+    pub fn scaled(self, position: DVec3) -> DVec3 {
+        times_power(position, self.exponent)
     }
 
     pub fn point(self, scaled: DVec3) -> DVec3 {
-        let [first, second] = self.factors(-self.exponent);
-        scaled * first * second
+        times_power(scaled, -self.exponent)
     }
 
     pub fn length(self, scaled: f64) -> f64 {
-        let [first, second] = self.factors(-self.exponent);
-        scaled * first * second
+        times(scaled, -self.exponent)
     }
 
-    /// Lengths among the smallest numbers are rounded when they are scaled back.
+    /// Lengths among the smallest numbers are rounded when they are scaled back; those beyond the largest are more than it.
     pub fn length_down(self, scaled: f64) -> f64 {
         let length = self.length(scaled);
-        if length > 0.0 && length < f64::MIN_POSITIVE { length.next_down() } else { length }
+        if length > 0.0 && length < f64::MIN_POSITIVE { length.next_down() } else { length.min(f64::MAX) }
     }
 
     pub fn length_up(self, scaled: f64) -> f64 {

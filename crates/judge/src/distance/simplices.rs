@@ -2,9 +2,12 @@
 
 use std::borrow::Cow;
 
-use shapeloom_core::Aabb;
 use shapeloom_core::glam::DVec3;
+use shapeloom_core::{Aabb, Exec};
 use shapeloom_mesh::{GeometricGraph, PointCloud, Polyline, TriMesh};
+
+use super::SimplexCells;
+use crate::JudgeError;
 
 /// Triangles, segments and points, by the corners of triangles: `[a, b, b]` is the segment from `a` to `b`, `[p, p, p]`
 /// the point `p`. Triangles without area count as what they are.
@@ -35,6 +38,14 @@ impl<'a> Simplices<'a> {
     pub fn segments(positions: impl Into<Cow<'a, [DVec3]>>, segments: &[[u32; 2]]) -> Self {
         let triangles: Vec<[u32; 3]> = segments.iter().map(|&[a, b]| [a, b, b]).collect();
         Self { positions: positions.into(), triangles: triangles.into() }
+    }
+
+    /// The shape as about `count` cells, at least one for each element, for [`distance_from_samples`](super::distance_from_samples).
+    ///
+    /// # Errors
+    /// As [`SimplexCells::new`].
+    pub fn cells(&self, count: u32, exec: &Exec) -> Result<SimplexCells<'_>, JudgeError> {
+        SimplexCells::new(self, count, exec)
     }
 
     /// The box around all that is named; empty without triangles. Indices out of range are passed over.

@@ -203,6 +203,47 @@ fn closed_forms_are_met() {
     assert_bounds(&found.b_to_a, middle, 1e-3);
 }
 
+/// Schwarz's lantern: its corners lie on a cylinder, its area grows without limit with the number of its layers, and its
+/// distance from the cylinder does not. Its nearest points to the axis are the middles of the level sides.
+#[test]
+fn a_lantern_is_as_far_from_a_prism_as_its_sides_are_deep() {
+    use std::f64::consts::PI;
+    let (sides, layers, fine) = (8u32, 150u32, 128u32);
+    let at = |turn: f64, z: f64| DVec3::new(turn.cos(), turn.sin(), z);
+    let ring = |layer: u32| {
+        (0..sides).map(move |i| at((f64::from(2 * i + layer % 2)) * PI / 8.0, f64::from(layer) / f64::from(150)))
+    };
+    let positions: Vec<DVec3> = (0..=layers).flat_map(ring).collect();
+    let triangles = (0..layers * sides).flat_map(|k| {
+        let (layer, i) = (k / sides, k % sides);
+        let corner = |above: u32, i: u32| (layer + above) * sides + i % sides;
+        // The ring that is turned by half a side is that of odd layers.
+        let (odd, even) = (layer % 2, 1 - layer % 2);
+        [[corner(0, i), corner(0, i + 1), corner(1, i + odd)], [corner(1, i), corner(1, i + 1), corner(0, i + even)]]
+    });
+    let lantern: Mesh = (positions, triangles.collect());
+    // The prism's sides have their middles where the lantern's corners and level sides have theirs.
+    let prism = |low: f64, high: f64| -> Mesh {
+        let ring = |z: f64| (0..fine).map(move |i| at(f64::from(2 * i + 1) * PI / 128.0, z));
+        let next = |i: u32| (i + 1) % fine;
+        let triangles = (0..fine).flat_map(|i| [[i, next(i), fine + i], [next(i), fine + next(i), fine + i]]);
+        (ring(low).chain(ring(high)).collect(), triangles.collect())
+    };
+    let there = between(&exact(), &lantern, &prism(-1.0, 2.0)).a_to_b;
+    assert_bounds(&there, (PI / 128.0).cos() - (PI / 8.0).cos(), 1e-4);
+    // From the prism, straight inward: never deeper.
+    let back = between(&Distances::new(), &lantern, &prism(0.0, 1.0)).b_to_a;
+    let sagitta = 1.0 - (PI / 8.0).cos();
+    assert!(back.converged && back.upper <= sagitta * 1.01 && back.lower > 0.0, "{back:?}");
+    // The lantern's area is more than ten times that of the cylinder.
+    let area = |mesh: &Mesh| {
+        let corners = mesh.1.iter().map(|t| t.map(|c| mesh.0[c as usize]));
+        corners.map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum::<f64>()
+    };
+    let wanted = 2.0 * 150.0 * 8.0 * (PI / 8.0).sin() * (1.0 / 150f64.powi(2) + sagitta * sagitta).sqrt();
+    assert!((area(&lantern) / wanted - 1.0).abs() < 1e-12 && wanted > 10.0 * std::f64::consts::TAU, "{wanted}");
+}
+
 #[test]
 fn points_and_segments_take_part() {
     let mut dice = Dice(3);
@@ -363,13 +404,13 @@ fn samples_of_anything_can_be_compared() {
     let bvh = TriangleBvh::build(&positions, &triangles, &Exec::default()).unwrap();
     let sample = |z: f64, weight: f64, radius: f64| Sample { position: DVec3::new(0.5, 0.5, z), weight, radius };
     let samples = [sample(1.0, 3.0, 0.25), sample(3.0, 1.0, 0.0)];
-    let found = distance_from_samples(&samples, &bvh, &Exec::default()).unwrap().unwrap();
+    let found = distance_from_samples(&samples[..], &bvh, &Exec::default()).unwrap().unwrap();
     assert!((found.mean.value - 1.5).abs() < 1e-15 && (found.rms.value - 3f64.sqrt()).abs() < 1e-15);
     assert!((found.mean.lower - 1.3125).abs() < 1e-12 && (found.mean.upper - 1.6875).abs() < 1e-12);
     assert_eq!((found.largest_sampled, found.samples), (3.0, 2));
-    assert_eq!(distance_from_samples(&[], &bvh, &Exec::default()), Ok(None));
+    assert_eq!(distance_from_samples(&[][..], &bvh, &Exec::default()), Ok(None));
     let nothing = TriangleBvh::build(&[], &[], &Exec::default()).unwrap();
-    assert_eq!(distance_from_samples(&samples, &nothing, &Exec::default()), Ok(None));
+    assert_eq!(distance_from_samples(&samples[..], &nothing, &Exec::default()), Ok(None));
 }
 
 #[test]

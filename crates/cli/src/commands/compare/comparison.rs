@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 use shapeloom_core::{Deviation, Exec};
 use shapeloom_judge::{DirectedHausdorff, Distances, Estimate, MeanDistance, Measured};
 
-use super::{Subject, short};
+use super::{Subject, apart, short};
 use crate::account;
 use crate::failure::Failure;
 
@@ -72,6 +72,11 @@ impl Comparison {
         self.widened(self.measured.hausdorff.lower(), self.measured.hausdorff.upper())
     }
 
+    /// Those of one direction.
+    pub(crate) fn bounds_of(&self, way: &DirectedHausdorff) -> (f64, f64) {
+        self.widened(way.lower, way.upper)
+    }
+
     fn widened(&self, lower: f64, upper: f64) -> (f64, f64) {
         match self.slack.unwrap_or(0.0) {
             0.0 => (lower, upper),
@@ -117,7 +122,7 @@ impl Comparison {
     fn way(&self, farthest: &DirectedHausdorff, mean: &MeanDistance) -> Value {
         let estimate =
             |found: &Estimate| json!({ "lower": account::number(found.lower), "upper": account::number(found.upper) });
-        let (lower, upper) = self.widened(farthest.lower, farthest.upper);
+        let (lower, upper) = self.bounds_of(farthest);
         let point = |p: [f64; 3]| Value::Array(p.into_iter().map(account::number).collect());
         let witness = &farthest.witness;
         json!({
@@ -140,10 +145,23 @@ impl Comparison {
         })
     }
 
+    /// A limit and the bounds, with as many digits as tell them apart.
+    fn told_apart(&self, limit: f64) -> [String; 3] {
+        let (lower, upper) = self.bounds();
+        apart([limit, lower, upper])
+    }
+
+    /// The bounds in words: where there is a limit, with digits that tell them from it.
+    pub(crate) fn bounds_words(&self) -> [String; 2] {
+        let (lower, _) = self.bounds();
+        let [_, low, high] = self.told_apart(self.limit.unwrap_or(lower));
+        [low, high]
+    }
+
     /// The verdict in words.
     pub(crate) fn verdict_words(&self) -> Option<String> {
         let (limit, verdict) = self.limit.zip(self.verdict)?;
-        let limit = short(limit);
+        let [limit, _, _] = self.told_apart(limit);
         Some(match verdict {
             Verdict::Within => format!("within the limit of {limit}"),
             Verdict::Above => format!("above the limit of {limit}"),
@@ -157,7 +175,7 @@ impl Comparison {
     /// Everything in lines of words.
     pub(crate) fn words(&self, subjects: &[Subject]) -> String {
         let (a, b) = (&subjects[0], &subjects[self.other]);
-        let (lower, upper) = self.bounds();
+        let (_, upper) = self.bounds();
         let diagonal = a.simplices.bounds().diagonal();
         let found = &self.measured;
         let mut lines = vec![format!("{} and {}", a.name, b.name)];
@@ -167,7 +185,8 @@ impl Comparison {
             String::new()
         };
         let proof = if self.slack.is_some() { "" } else { "; of their triangles, whose own error is not proven" };
-        lines.push(format!("  Hausdorff distance: from {} to {}{share}{proof}", short(lower), short(upper)));
+        let [low, high] = self.bounds_words();
+        lines.push(format!("  Hausdorff distance: from {low} to {high}{share}{proof}"));
         if !found.hausdorff.converged() {
             lines.push(
                 "  not converged: splits or memory ran out; the bounds hold, but are wider than asked for".into(),

@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &CompareArguments, session: &mut Session<'_>) -> Re
         return Err(Failure::usage("E-usage-shapes", message));
     }
     arguments.way.tolerance()?;
-    let limit: Option<Tolerance> = arguments.fail_above.as_deref().map(str::parse).transpose()?;
+    let limit = arguments.fail_above.as_deref().map(limit).transpose()?;
     if let Some(folder) = &arguments.report {
         report::files(folder, &paths).iter().try_for_each(|path| check_free(path, arguments.force))?;
     }
@@ -76,9 +76,16 @@ pub(crate) fn run(arguments: &CompareArguments, session: &mut Session<'_>) -> Re
     Ok(())
 }
 
+/// A limit; none for 0, which identical shapes keep, however large they are.
+fn limit(text: &str) -> Result<Option<Tolerance>, ToleranceError> {
+    let number = text.trim();
+    let number = number.strip_suffix('%').unwrap_or(number).trim_end();
+    if number.parse() == Ok(0.0) { Ok(None) } else { text.parse().map(Some) }
+}
+
 /// The limit in the units of the first shape.
-fn absolute_limit(limit: Tolerance, first: &Subject) -> Result<f64, ToleranceError> {
-    limit.resolve(first.simplices.bounds().diagonal())
+fn absolute_limit(limit: Option<Tolerance>, first: &Subject) -> Result<f64, ToleranceError> {
+    limit.map_or(Ok(0.0), |limit| limit.resolve(first.simplices.bounds().diagonal()))
 }
 
 fn told(subjects: &[Subject], comparisons: &[Comparison], arguments: &CompareArguments, limit: Option<f64>) -> Value {
@@ -100,6 +107,43 @@ fn told(subjects: &[Subject], comparisons: &[Comparison], arguments: &CompareArg
 
 /// A number with six digits.
 fn short(value: f64) -> String {
-    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
-    Words(rounded).to_string()
+    let [text] = apart([value]);
+    text
+}
+
+/// Numbers with six digits, or as many more as tell those apart that differ.
+fn apart<const N: usize>(values: [f64; N]) -> [String; N] {
+    let with = |digits: usize| values.map(|value| format!("{value:.digits$e}").parse().unwrap_or(value));
+    let told = |rounded: &[f64; N]| {
+        let pairs = (0..N).flat_map(|i| (0..i).map(move |j| (i, j)));
+        pairs.into_iter().all(|(i, j)| (values[i] == values[j]) == (rounded[i] == rounded[j]))
+    };
+    // 17 digits tell all numbers apart.
+    (5..16).map(with).find(told).unwrap_or(values).map(|value| Words(value).to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_differ_are_told_apart() {
+        assert_eq!(apart([0.123_456_789, 2.0]), ["0.123457", "2"]);
+        assert_eq!(apart([0.123_456_789, 0.123_456_712, 0.123_456_789]), ["0.1234568", "0.1234567", "0.1234568"]);
+        assert_eq!(apart([0.1, 0.1f64.next_up()]), ["0.1", "0.10000000000000002"]);
+        assert_eq!(apart([1e300, f64::INFINITY]), ["1e300", "inf"]);
+        assert_eq!(apart([f64::MAX, f64::MAX.next_down()]), [f64::MAX, f64::MAX.next_down()].map(|x| format!("{x:e}")));
+        assert_eq!(short(1.0 / 3.0), "0.333333");
+    }
+
+    #[test]
+    fn nothing_is_a_limit() {
+        for text in ["0", "0.0", " 0 % ", "0%", "-0", "0e5"] {
+            assert_eq!(limit(text), Ok(None), "{text}");
+        }
+        assert_eq!(limit("0.5%"), Ok(Some(Tolerance::OfDiagonal(0.005))));
+        for text in ["-1", "nan", "near", "", "%"] {
+            assert!(limit(text).is_err(), "{text}");
+        }
+    }
 }

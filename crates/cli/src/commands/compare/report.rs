@@ -126,6 +126,7 @@ fn table(subjects: &[Subject], comparisons: &[Comparison]) -> String {
             (comparison.other, 0, &found.b_to_a, &found.hausdorff.b_to_a),
         ];
         for (from, to, mean, farthest) in ways {
+            let (lower, upper) = comparison.bounds_of(farthest);
             let _ = writeln!(
                 text,
                 "{},{},{:e},{:e},{:e},{:e},{:e},{},{:e}",
@@ -134,8 +135,8 @@ fn table(subjects: &[Subject], comparisons: &[Comparison]) -> String {
                 mean.mean.value,
                 mean.rms.value,
                 farthest.lower,
-                farthest.lower,
-                farthest.upper,
+                lower,
+                upper,
                 farthest.converged,
                 subjects[0].simplices.bounds().diagonal()
             );
@@ -204,7 +205,7 @@ fn shapes(html: &mut String, subjects: &[Subject], drawn: &[Drawn]) {
 
 fn section(html: &mut String, subjects: &[Subject], comparison: &Comparison, drawn: &[Drawn]) {
     let (a, b) = (&subjects[0], &subjects[comparison.other]);
-    let (lower, upper) = comparison.bounds();
+    let (_, upper) = comparison.bounds();
     let found = &comparison.measured;
     let _ = writeln!(html, "<h2>{} and {}</h2>", escaped(&a.name), escaped(&b.name));
     let diagonal = a.simplices.bounds().diagonal();
@@ -213,7 +214,8 @@ fn section(html: &mut String, subjects: &[Subject], comparison: &Comparison, dra
     } else {
         String::new()
     };
-    let _ = writeln!(html, "<p>Hausdorff distance from {} to {}{share}.", short(lower), short(upper));
+    let [low, high] = comparison.bounds_words();
+    let _ = writeln!(html, "<p>Hausdorff distance from {low} to {high}{share}.");
     if comparison.slack.is_none() {
         html.push_str(" It is that of the triangles, whose own error is not proven.");
     }
@@ -241,7 +243,7 @@ fn section(html: &mut String, subjects: &[Subject], comparison: &Comparison, dra
             short(mean.mean.upper),
             short(mean.rms.value),
             short(farthest.lower),
-            short(farthest.upper)
+            short(comparison.bounds_of(farthest).1)
         );
     }
     html.push_str("</table>\n<div class=\"pictures\">\n");

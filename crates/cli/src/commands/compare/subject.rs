@@ -33,9 +33,8 @@ pub(crate) struct Subject {
     /// How far what is compared may be from what was read.
     pub(crate) deviation: Deviation,
     kinds: Vec<&'static str>,
-    area: f64,
-    /// None where there is no enclosed volume.
-    volume: Option<f64>,
+    /// Whether the surfaces enclose a volume.
+    encloses: bool,
     /// What the judge says of the surfaces, vertices at one place taken as one.
     pub(crate) soundness: Option<Soundness>,
     pub(crate) findings: Findings,
@@ -91,8 +90,7 @@ impl Subject {
             simplices,
             deviation: conversion.deviation,
             kinds,
-            area: 0.0,
-            volume: None,
+            encloses: false,
             soundness: None,
             findings: input.read.findings,
             shape: conversion.shape,
@@ -102,32 +100,34 @@ impl Subject {
         Ok(subject)
     }
 
-    /// The area, and the volume of what is closed.
+    /// Judges the surfaces, and whether they enclose a volume.
     fn measure(&mut self, exec: &Exec) -> Result<(), Failure> {
-        let mut volume = Some(0.0);
-        let mut surfaces = false;
+        let mut closed = true;
+        let mut judged = Findings::default();
         for part in &self.shape.parts {
             let placed = part.placed();
             let Geometry::TriMesh(mesh) = &*placed else { continue };
-            surfaces = true;
-            self.area += mesh.area();
             let welded = Weld::new().convert_with(mesh, exec)?.value;
-            let (found, _) = Soundness::of(&welded, exec, &mut Findings::default())?;
+            let (found, _) = Soundness::of(&welded, exec, &mut judged)?;
             self.soundness = Some(match self.soundness.take() {
                 Some(before) => before.with(&found),
                 None => found,
             });
-            let whole = is_cycle(mesh, exec)?;
-            volume = volume.filter(|_| whole).map(|volume| volume + mesh.volume());
+            closed = closed && is_cycle(mesh, exec)?;
         }
-        self.volume = volume.filter(|_| surfaces);
-        if surfaces && self.volume.is_none() {
+        let Some(soundness) = &self.soundness else { return Ok(()) };
+        self.encloses = closed;
+        // Why there are no measures at all; the rest is told below, as it matters here.
+        for finding in judged.iter().filter(|finding| finding.code.starts_with("E-")) {
+            self.findings.push(finding.code, finding.severity, Place::Whole, finding.message.clone());
+        }
+        if !closed {
             let message = "the surface is not closed: it encloses no volume";
             self.findings.push("W-compare-open", Severity::Note, Place::Whole, message);
         }
-        if !self.area.is_finite() || self.volume.is_some_and(|volume| !volume.is_finite()) {
-            let message = "the area or volume is beyond the largest number: it is left out";
-            self.findings.push("W-compare-overflow", Severity::Warning, Place::Whole, message);
+        if soundness.area().is_none() || (closed && soundness.volume().is_none()) {
+            let message = "the area or volume is beyond the numbers, or so small that it vanishes: it is left out";
+            self.findings.push("W-compare-size", Severity::Warning, Place::Whole, message);
         }
         Ok(())
     }
@@ -145,14 +145,14 @@ impl Subject {
         }
     }
 
-    /// The area; none where there is no surface, or it is beyond the numbers.
+    /// The area; none where there is no surface, or it is beyond the numbers or vanishes.
     pub(crate) fn area(&self) -> Option<f64> {
-        self.has_surface().then_some(self.area).filter(|area| area.is_finite())
+        self.soundness.as_ref().filter(|_| self.has_surface())?.area()
     }
 
-    /// The volume; none where the surface is not closed.
+    /// The volume; none where the surface is not closed, or it is beyond the numbers or vanishes.
     pub(crate) fn volume(&self) -> Option<f64> {
-        self.volume.filter(|volume| volume.is_finite())
+        self.soundness.as_ref().filter(|_| self.encloses)?.volume()
     }
 
     /// What is known of the shape alone.
