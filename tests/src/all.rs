@@ -31,6 +31,7 @@ mod mutations;
 mod oracles;
 mod peer_gltf;
 mod properties;
+mod query_laws;
 mod regressions;
 mod round_trips;
 mod same_bits;

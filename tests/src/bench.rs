@@ -24,7 +24,8 @@ fn every_task_prints_lines_of_json() {
         let expected = match task {
             Task::Tessellate | Task::Topology | Task::SelfIntersection => 1,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
-            Task::Read | Task::Write => 5,
+            Task::Closest => 2,
+            Task::Read | Task::Write | Task::Rays => 5,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");
         for line in lines.lines() {
@@ -47,6 +48,8 @@ fn wrong_words_and_missing_inputs_are_told() {
     assert_eq!(run(&["shapeloom-bench", "dance"]).0, 2);
     let (code, err) = run(&["shapeloom-bench", "tessellate", "--data", "nowhere"]);
     assert!(code == 2 && err.contains("nowhere"), "{err}");
-    let (code, err) = run(&["shapeloom-bench", "read", "--data", "nowhere"]);
-    assert!(code == 2 && err.contains("blob_1m"), "{err}");
+    for task in ["read", "rays", "closest"] {
+        let (code, err) = run(&["shapeloom-bench", task, "--data", "nowhere"]);
+        assert!(code == 2 && err.contains("blob_1m"), "{err}");
+    }
 }

@@ -1,13 +1,9 @@
-//! The laws of core's capability traits, run on everything that implements them.
+//! The laws of core's capability traits, run on everything that implements them; those of queries are in `query_laws`.
 
 use shapeloom::core::glam::{DMat3, DVec2, DVec3};
-use shapeloom::core::{
-    Affine, Closest, ClosestPoint, Curve, Exec, Hit, Interval, Ray, Rays, Surface, VectorSpace, Warp,
-};
+use shapeloom::core::{Affine, Curve, Interval, Surface, VectorSpace, Warp};
 use shapeloom::parametric::{BezierCurve, BezierPatch};
-use shapeloom::spatial::TriangleBvh;
 
-use crate::oracles::{to_triangle, triangles};
 use crate::shapes;
 use crate::support::Dice;
 
@@ -75,40 +71,6 @@ fn warp_laws(warp: &impl Warp) {
     }
 }
 
-/// The first hit is the nearest of all, `any_hit` tells whether there is one, hits lie within reach, batches agree.
-fn ray_laws(shape: &impl Rays, rays: &[Ray]) -> usize {
-    let mut batch = vec![None; rays.len()];
-    shape.first_hits(rays, &mut batch, &Exec::default()).expect("nothing stops it");
-    let (mut hits, mut count) = (Vec::new(), 0);
-    for (ray, together) in rays.iter().zip(batch) {
-        shape.all_hits(ray, &mut hits);
-        let first: Option<Hit> = shape.first_hit(ray);
-        assert_eq!(first, together);
-        assert_eq!(first, hits.first().copied());
-        assert_eq!(shape.any_hit(ray), first.is_some());
-        assert!(hits.windows(2).all(|pair| (pair[0].distance, pair[0].element) < (pair[1].distance, pair[1].element)));
-        assert!(hits.iter().all(|hit| ray.reach.contains(hit.distance)));
-        count += hits.len();
-    }
-    count
-}
-
-/// No point of the shape is closer than the answer, the answer is that far away, batches agree.
-fn closest_laws(shape: &impl ClosestPoint, brute: impl Fn(DVec3) -> f64, queries: &[DVec3]) {
-    let mut batch: Vec<Option<Closest>> = vec![None; queries.len()];
-    shape.closest_points(queries, &mut batch, &Exec::default()).expect("nothing stops it");
-    for (&query, together) in queries.iter().zip(batch) {
-        let found = shape.closest(query);
-        assert_eq!(found, together);
-        let found = found.expect("the shape is not empty");
-        let distance = found.distance_squared.sqrt();
-        assert!((distance - brute(query)).abs() <= 1e-12 * (1.0 + distance), "{query}");
-        assert!((found.point.distance(query) - distance).abs() <= 1e-12 * (1.0 + distance));
-        assert_eq!(shape.closest_within(query, distance * 0.99 - 1e-12), None);
-    }
-    assert_eq!(shape.closest(DVec3::NAN), None);
-}
-
 #[test]
 fn bezier_curves_are_curves() {
     curve_laws(&shapes::curve(), 10.0);
@@ -140,24 +102,4 @@ fn affine_maps_are_warps() {
     let linear = DMat3::from_cols(DVec3::new(1.0, 2.0, 0.5), DVec3::new(-1.0, 0.3, 2.0), DVec3::new(0.0, 1.0, -2.0));
     warp_laws(&Affine { linear, translation: DVec3::new(3.0, -4.0, 5.0) });
     warp_laws(&Affine::IDENTITY);
-}
-
-#[test]
-fn triangle_hierarchies_answer_rays_and_closest_points() {
-    let mesh = shapes::tagged_triangles();
-    let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), &Exec::default()).expect("a sound mesh");
-    let mut dice = Dice(21);
-    let mut point = |size: f64| DVec3::new(dice.unit() - 0.5, dice.unit() - 0.5, dice.unit() - 0.5) * size;
-    let rays: Vec<Ray> = (0..2000)
-        .map(|k| {
-            let (origin, target) = (point(5.0), point(2.0));
-            let ray = Ray::new(origin, target - origin).expect("different points");
-            if k % 3 == 0 { ray.within(Interval::new(0.5, 3.0)) } else { ray }
-        })
-        .collect();
-    assert!(ray_laws(&bvh, &rays) > 1000);
-    let all = triangles(&mesh);
-    let brute = |p: DVec3| all.iter().map(|&t| to_triangle(p, t)).fold(f64::INFINITY, f64::min);
-    let queries: Vec<DVec3> = (0..500).map(|_| point(4.0)).collect();
-    closest_laws(&bvh, brute, &queries);
 }

@@ -8,10 +8,12 @@ type Rational = [i128; 4];
 type Whole = [i128; 3];
 
 pub fn kind_of_pair(first: [Whole; 3], second: [Whole; 3]) -> Option<PairKind> {
+    let [one, other] = [first, second].map(|[a, b, c]| cross(minus(b, a), minus(c, a)));
+    let opposite = dot(one, other) < 0;
     let [first, second] = [first, second].map(distinct);
     let shared: Vec<Whole> = first.iter().copied().filter(|corner| second.contains(corner)).collect();
     if shared.len() == first.len() && shared.len() == second.len() {
-        return Some(PairKind::Coincident);
+        return Some(if opposite { PairKind::Coincident } else { PairKind::Duplicate });
     }
     let (one, other) = (Set::new(&first), Set::new(&second));
     let mut common: Vec<Rational> = first.iter().map(|&[x, y, z]| [x, y, z, 1]).collect();
@@ -41,7 +43,7 @@ pub fn kind_of_pair(first: [Whole; 3], second: [Whole; 3]) -> Option<PairKind> {
         let flat = within(&first, &other) || within(&second, &one);
         match (dimension, shared.len()) {
             (2, 2) => return Some(PairKind::Folded),
-            (2, _) => return Some(PairKind::Overlap),
+            (2, _) => return Some(if opposite { PairKind::Contact } else { PairKind::Overlap }),
             (_, 0) if !flat && one.area | other.area => return Some(PairKind::Crossing),
             (_, _) if !flat && one.area | other.area => return Some(PairKind::CrossingAtCorner),
             _ => {}

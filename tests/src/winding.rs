@@ -1,7 +1,9 @@
-//! Winding numbers and signed distances of real files: closed meshes against the parity of rays, which share no code.
+//! Winding numbers and signed distances of real files: closed meshes against the judge's exact crossings of a ray, which
+//! share nothing but the predicates.
 
 use shapeloom::core::glam::DVec3;
-use shapeloom::core::{ClosestPoint, Convert, Exec, Ray, Rays};
+use shapeloom::core::{ClosestPoint, Convert, Exec};
+use shapeloom::judge::{Location, Solid};
 use shapeloom::mesh::{TriMesh, TriangulatePolygons};
 use shapeloom::shape::Geometry;
 use shapeloom::spatial::{InsideRule, SignedDistance, WindingTree, generalized_winding_number};
@@ -49,7 +51,7 @@ fn places(mesh: &TriMesh, count: usize) -> Vec<DVec3> {
 }
 
 #[test]
-fn closed_meshes_are_inside_where_rays_cross_them_an_odd_number_of_times() {
+fn closed_meshes_wind_as_often_as_exact_crossings_say() {
     let exec = Exec::default();
     for name in CLOSED {
         let Some(mesh) = triangles(name) else {
@@ -57,19 +59,21 @@ fn closed_meshes_are_inside_where_rays_cross_them_an_odd_number_of_times() {
         };
         let distance = SignedDistance::build(mesh.positions(), mesh.triangles(), &exec).expect(name);
         assert!(distance.is_closed(), "{name}");
-        let direction = DVec3::new(0.3178, 0.7213, -0.6154);
-        let (mut inside, mut hits) = (0, Vec::new());
+        let solid = Solid::new(&mesh, &exec).expect(name);
+        let mut inside = 0;
         for query in places(&mesh, 250) {
-            hits.clear();
-            distance.bvh().all_hits(&Ray::new(query, direction).expect("a direction"), &mut hits);
-            let odd = hits.len() % 2 == 1;
-            let found = distance.distance(query);
-            assert_eq!(found < 0.0, odd, "{name} {query}: {found}");
+            let Location::Off { winding } = solid.locate(query).expect(name) else {
+                panic!("{name} {query}: on the surface");
+            };
+            let wanted = winding as f64;
+            assert_eq!(distance.distance(query) < 0.0, winding == 1, "{name} {query}: {winding}");
+            let exact = distance.winding().winding_number_exact(query);
+            assert!((exact.value - wanted).abs() <= exact.bound && exact.bound < 1e-6, "{name} {query}: {exact:?}");
             let within = distance.winding().winding_number_within(query, 0.1);
-            assert!((within.value - f64::from(u8::from(odd))).abs() <= within.bound, "{name} {query}: {within:?}");
+            assert!((within.value - wanted).abs() <= within.bound && within.bound <= 0.1, "{name} {query}: {within:?}");
             let fast = distance.winding().winding_number(query);
-            assert!((fast - f64::from(u8::from(odd))).abs() < 0.02, "{name} {query}: {fast}");
-            inside += usize::from(odd);
+            assert!((fast - wanted).abs() < 0.02, "{name} {query}: {fast}");
+            inside += usize::from(winding == 1);
         }
         assert!(inside > 30, "{name}: {inside}");
     }

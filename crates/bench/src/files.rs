@@ -36,6 +36,7 @@ pub(crate) fn blob(setting: &Setting) -> Result<(TriMesh, String), String> {
     }
 }
 
+/// A file's shape, its format and its length in bytes.
 pub(crate) fn load(path: &PathBuf) -> Result<(Shape, &'static Format, u64), String> {
     let name = path.display().to_string();
     let said = |error: &dyn std::fmt::Display| format!("{name}: {error}");

@@ -3,9 +3,12 @@
 //! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
+mod closest;
 mod files;
 mod hausdorff;
 mod measure;
+mod queries;
+mod rays;
 mod self_intersection;
 mod signed_distance;
 mod surface_queries;
@@ -67,6 +70,10 @@ pub enum Task {
     SignedDistance,
     /// How far meshes are apart, bounded from both sides.
     Hausdorff,
+    /// A hierarchy over blob_1m.ply, and the rays of rays_random.f32 and rays_camera.f32 (else of a formula) on it.
+    Rays,
+    /// Closest points of blob_1m.ply to qry_surface.f32 and every tenth of qry_box.f32 (else to points of a formula).
+    Closest,
 }
 
 impl Task {
@@ -82,17 +89,33 @@ impl Task {
 }
 
 impl Task {
-    /// What peers call the same work on the same input.
-    pub(crate) fn peer_task(self, input: &str) -> String {
-        let extension = input.rsplit('.').next().unwrap_or_default();
+    /// What peers call the same work on the same input; some have a name for each way to run it.
+    pub(crate) fn peer_tasks(self, input: &str) -> Vec<String> {
+        let last = |separator: [char; 2]| input.rsplit(separator).next().unwrap_or_default();
+        let names = |task: &str, ways: &[&str]| ways.iter().map(|way| format!("{task}{way}")).collect();
         match self {
-            Self::Read => format!("m.read_1m_{extension}"),
-            Self::SelfIntersection => "j.self_intersection".into(),
-            Self::Topology => "p.topology".into(),
-            // Peers measure both under one name.
-            Self::Winding | Self::SignedDistance if input.contains("qry_surface") => "j.signed_near_1m".to_owned(),
-            Self::Winding | Self::SignedDistance => "j.signed_box_100k".to_owned(),
-            Self::Tessellate | Self::Write | Self::Hausdorff => String::new(),
+            Self::Read => vec![format!("m.read_1m_{}", last(['.', '.']))],
+            Self::Rays => match input.rsplit(": ").next().unwrap_or_default() {
+                "build" => names("j.rays.build_", &["bvh", "aabb"]),
+                "random first" => names("j.rays.random", &["", "_t1", "_tall"]),
+                "camera first" => names("j.rays.camera", &["", "_t1", "_tall"]),
+                "random any" => names("j.rays.any_random", &["_t1", "_tall"]),
+                _ => Vec::new(),
+            },
+            Self::Closest => {
+                let size = if last([':', ' ']) == "near" { "near_1m" } else { "box_100k" };
+                names(&format!("j.closest_{size}"), &[".query", ".build+query", ".t1", ".tall"])
+            }
+            Self::SelfIntersection => vec!["j.self_intersection".into()],
+            Self::Winding | Self::SignedDistance => {
+                let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
+                match self {
+                    Self::Winding => vec![format!("j.signed_{points}.build+winding")],
+                    // Not those that build too: here the clock starts after that.
+                    _ => names(&format!("j.closest_{points}"), &[".signed_tall", ".signed"]),
+                }
+            }
+            Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff => Vec::new(),
         }
     }
 }
@@ -134,6 +157,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Winding => winding::run(&setting),
         Task::SignedDistance => signed_distance::run(&setting),
         Task::Hausdorff => hausdorff::run(&setting),
+        Task::Rays => rays::run(&setting),
+        Task::Closest => closest::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

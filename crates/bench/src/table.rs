@@ -20,7 +20,7 @@ pub(crate) fn markdown(task: Task, outcomes: &[Outcome], lines: &str) -> Result<
     for outcome in outcomes {
         let ours = format!("{:.4} ({:.4})", outcome.times.cpu, outcome.times.wall);
         let name = outcome.input.rsplit('/').next().unwrap_or_default();
-        let mut peers = peers(&task.peer_task(&outcome.input), lines)?;
+        let mut peers = peers(&task.peer_tasks(&outcome.input), lines)?;
         peers.sort_by(|a, b| a.cpu.total_cmp(&b.cpu));
         if peers.is_empty() {
             table += &format!("| {} {name} | {ours} | | | |\n", task.name());
@@ -36,16 +36,21 @@ pub(crate) fn markdown(task: Task, outcomes: &[Outcome], lines: &str) -> Result<
     Ok(table)
 }
 
-fn peers(task: &str, lines: &str) -> Result<Vec<Peer>, String> {
+fn peers(tasks: &[String], lines: &str) -> Result<Vec<Peer>, String> {
     let mut found = Vec::new();
     for (number, line) in lines.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let line: Value = serde_json::from_str(line).map_err(|error| format!("line {}: {error}", number + 1))?;
         let text = |key: &str| line[key].as_str().unwrap_or_default().to_owned();
-        if text("task") != task {
+        if !tasks.contains(&text("task")) {
             continue;
         }
         if let (Some(cpu), Some(wall)) = (line["cpu_s"].as_f64(), line["wall_s"].as_f64()) {
-            found.push(Peer { name: format!("{} {}", text("peer"), text("version")), cpu, wall });
+            let threads = match text("task").rsplit(['.', '_']).next() {
+                Some("t1") => ", one thread",
+                Some("tall") => ", all threads",
+                _ => "",
+            };
+            found.push(Peer { name: format!("{} {}{threads}", text("peer"), text("version")), cpu, wall });
         }
     }
     Ok(found)
@@ -71,5 +76,32 @@ mod tests {
         assert_eq!(rows[0], "| read blob_1m.obj | 0.2000 (0.1000) | fast 2 | 0.5000 (0.5000) | 2.50 |");
         assert!(rows[1].contains("slow 1") && rows.len() == 2);
         assert!(markdown(Task::Read, &[], "nonsense").is_ok());
+    }
+
+    #[test]
+    fn winding_numbers_and_signed_distances_are_set_beside_their_own() {
+        let outcome = |file: &str| Outcome {
+            input: file.into(),
+            times: Times { wall: 1.0, cpu: 1.0 },
+            figures: Default::default(),
+        };
+        let names = [
+            "j.signed_near_1m.build+winding",
+            "j.signed_near_1m.build+signed",
+            "j.closest_near_1m.signed_tall",
+            "j.closest_near_1m.tall",
+            "j.signed_box_100k.build+winding",
+            "j.closest_box_100k.signed",
+        ];
+        let line = |name: &&str| {
+            format!("{{\"task\":\"{name}\",\"peer\":\"{name}\",\"version\":\"1\",\"wall_s\":2,\"cpu_s\":2}}\n")
+        };
+        let lines: String = names.iter().map(line).collect();
+        let files = ["a/qry_surface.f32", "a/qry_box.f32"].map(outcome);
+        for (task, wanted) in [(Task::Winding, [names[0], names[4]]), (Task::SignedDistance, [names[2], names[5]])] {
+            let table = markdown(task, &files, &lines).unwrap();
+            let rows: Vec<&str> = table.lines().skip(2).collect();
+            assert!(rows.len() == 2 && rows.iter().zip(wanted).all(|(row, name)| row.contains(name)), "{table}");
+        }
     }
 }

@@ -7,6 +7,34 @@ use shapeloom_judge::{JudgeError, Measures, MeshRef, Topology};
 use crate::account::number;
 use crate::failure::Failure;
 
+/// The most elements of a kind that are listed as witnesses.
+const LISTED: usize = 100;
+
+/// The elements that show what a mesh is not, by kind: the first of each, and all of a ring that turns over.
+pub(crate) fn witnesses(topology: &Topology, measures: Option<&Measures>) -> Value {
+    fn first<T: Clone + Into<Value>>(list: &[T]) -> Value {
+        list[..list.len().min(LISTED)].to_vec().into()
+    }
+    let mut loops = Vec::new();
+    for edges in topology.boundary.iter().take(LISTED) {
+        loops.push(json!({ "edges": edges.len(), "first": edges[0] }));
+    }
+    let lists = [
+        ("boundary_loops", Value::Array(loops)),
+        ("non_manifold_edges", first(&topology.non_manifold_edges)),
+        ("non_manifold_vertices", first(&topology.non_manifold_vertices)),
+        ("inconsistent_edges", first(&topology.inconsistent_edges)),
+        ("one_sided_ring", json!(topology.orientation_witness)),
+        ("repeating_faces", first(&topology.repeating_faces)),
+        ("flat_faces", measures.map_or(json!([]), |measures| first(&measures.flat_faces))),
+        ("duplicate_faces", first(&topology.duplicate_faces)),
+        ("isolated_vertices", first(&topology.isolated_vertices)),
+        ("coincident_vertices", measures.map_or(json!([]), |measures| first(&measures.coincident_vertices))),
+    ];
+    let found = lists.into_iter().filter(|(_, list)| list.as_array().is_some_and(|list| !list.is_empty()));
+    Value::Object(found.map(|(key, list)| (key.to_owned(), list)).collect())
+}
+
 /// The numbers of one mesh, or of several together.
 #[derive(Clone, Debug)]
 pub(crate) struct Soundness {
@@ -35,8 +63,12 @@ pub(crate) struct Soundness {
 }
 
 impl Soundness {
-    /// Judges a mesh. What cannot be told is said in the findings.
-    pub(crate) fn of<'a>(mesh: impl Into<MeshRef<'a>>, exec: &Exec, findings: &mut Findings) -> Result<Self, Failure> {
+    /// Judges a mesh, and lists its [`witnesses`]. What cannot be told is said in the findings.
+    pub(crate) fn of<'a>(
+        mesh: impl Into<MeshRef<'a>>,
+        exec: &Exec,
+        findings: &mut Findings,
+    ) -> Result<(Self, Value), Failure> {
         let mesh = mesh.into();
         let topology = Topology::of(mesh, &exec.part(0.0, 0.7))?;
         let measures = match Measures::of(mesh, &exec.part(0.7, 1.0)) {
@@ -48,6 +80,7 @@ impl Soundness {
             Err(error) => return Err(error.into()),
         };
         let found = Self::new(&topology, measures.as_ref());
+        let shown = witnesses(&topology, measures.as_ref());
         if let Some(measures) = measures
             && (measures.area.is_none() || measures.volume.is_none())
         {
@@ -59,7 +92,7 @@ impl Soundness {
                            of the bounding box, and encloses nothing";
             findings.push("W-info-open", Severity::Note, Place::Whole, message);
         }
-        Ok(found)
+        Ok((found, shown))
     }
 
     /// The numbers of what the judge found.

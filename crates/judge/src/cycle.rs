@@ -9,6 +9,11 @@ pub(crate) fn key(cycle: &[u32]) -> u64 {
     })
 }
 
+/// Whether one cycle is the other but for where it starts.
+pub(crate) fn same_rotation(one: &[u32], other: &[u32]) -> bool {
+    least_rotation(one) == least_rotation(other)
+}
+
 /// The smallest of all rotations of a cycle and of its reverse.
 pub(crate) fn canonical(cycle: &[u32]) -> Vec<u32> {
     let reversed: Vec<u32> = cycle.iter().rev().copied().collect();

@@ -4,6 +4,7 @@
 //! arithmetic. Every answer that says "no" comes with a witness: the elements that show it.
 
 mod check;
+mod columns;
 mod cycle;
 mod distance;
 mod equal_positions;

@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use shapeloom_core::Exec;
 use shapeloom_core::glam::{DVec2, DVec3};
 use shapeloom_core::predicates::{orient2d, orient3d};
+use shapeloom_core::{Aabb, Exec};
 use shapeloom_mesh::newell_vector;
 
 use crate::scaled::times_power;
@@ -58,8 +58,11 @@ impl PolygonReport {
         if repeated && !closed {
             points.pop();
         }
-        let open = match (corners.first(), corners.last()) {
-            (Some(&first), Some(&last)) if !closed && !repeated => Some(first.distance(last)),
+        let open = match (points.first(), points.last()) {
+            (Some(&first), Some(&last)) if !closed && !repeated => {
+                let gap = first.distance(last);
+                Some(times_power(DVec3::X * gap, -scaled.exponent).x)
+            }
             (None, _) => Some(0.0),
             _ => None,
         };
@@ -109,7 +112,7 @@ fn not_planar(points: &[DVec3]) -> Option<[u32; 4]> {
     Some([0, second as u32, third as u32, fourth as u32])
 }
 
-/// The first pair of sides, by their boxes along x, that meet where they should not.
+/// The first pair of sides, by their boxes along an axis, that meet where they should not.
 fn not_simple(points: &[DVec3], closed: bool, exec: &Exec) -> Result<Option<[u32; 2]>, JudgeError> {
     let count = points.len();
     let sides = if closed { count } else { count.saturating_sub(1) };
@@ -123,13 +126,16 @@ fn not_simple(points: &[DVec3], closed: bool, exec: &Exec) -> Result<Option<[u32
         let other = if next(flat) < sides as u32 { next(flat) } else { flat.saturating_sub(1) };
         return Ok(Some([flat.min(other), flat.max(other)]));
     }
-    let low = |k: u32| side(k)[0].x.min(side(k)[1].x);
+    // Along the axis on which the polygon is longest: across a plane of it all sides would stand at one place.
+    let size = Aabb::from_points(points.iter().copied()).size();
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+    let low = |k: u32| side(k)[0][axis].min(side(k)[1][axis]);
     let mut order: Vec<u32> = (0..sides as u32).collect();
     order.sort_by(|&a, &b| low(a).total_cmp(&low(b)).then(a.cmp(&b)));
     let mut tests = 0u32;
     for (place, &one) in order.iter().enumerate() {
         exec.check()?;
-        let high = side(one)[0].x.max(side(one)[1].x);
+        let high = side(one)[0][axis].max(side(one)[1][axis]);
         for &other in order[place + 1..].iter().take_while(|&&other| low(other) <= high) {
             tests += 1;
             if tests.is_multiple_of(1 << 14) {

@@ -48,6 +48,15 @@ impl Scaled {
     }
 }
 
+/// The middle of two points of a [`Scaled`] shape, if it is a number exactly.
+pub(crate) fn exact_middle(a: DVec3, b: DVec3) -> Option<DVec3> {
+    let sum = a + b;
+    // The rounding error of each sum (Knuth's two-sum); coordinates are at most 1 and halving is exact.
+    let rest = sum - a;
+    let error = (a - (sum - rest)) + (b - rest);
+    (error == DVec3::ZERO).then_some(sum * 0.5)
+}
+
 /// Whether a position, scaled, has bits that exact products of three would lose.
 fn is_too_fine(position: DVec3, exponent: i32) -> bool {
     let bits = position.to_array().map(lowest_bit);

@@ -7,6 +7,7 @@ use shapeloom_core::predicates::{orient2d, orient3d};
 use shapeloom_core::{Aabb, Exec, Reservation};
 use shapeloom_mesh::TriMesh;
 
+use crate::columns::Columns;
 use crate::{JudgeError, Scaled};
 
 /// Where a point lies relative to triangles.
@@ -35,13 +36,15 @@ impl Location {
 /// that it meets no edge and no vertex; every decision is the sign of a determinant in exact arithmetic. The answer is right
 /// for every closed mesh, whatever it crosses. For an open one it counts the crossings of that ray and no more.
 ///
-/// Cost: O(n) a query for n triangles; 24 bytes a vertex.
+/// Cost: about the triangles that one of √n × √n columns along x holds, for n triangles; 24 bytes a vertex and up to 40 a
+/// triangle.
 #[derive(Debug)]
 pub struct Solid<'a> {
     triangles: &'a [[u32; 3]],
     positions: Vec<DVec3>,
     bounds: Aabb,
     exponent: i32,
+    columns: Columns,
     _memory: Reservation,
 }
 
@@ -55,7 +58,8 @@ impl<'a> Solid<'a> {
         let Scaled { positions, exponent } = Scaled::new(mesh.positions())?;
         let corners = mesh.triangles().as_flattened().iter();
         let bounds = Aabb::from_points(corners.map(|&vertex| mesh.positions()[vertex as usize]));
-        Ok(Self { triangles: mesh.triangles(), positions, bounds, exponent, _memory: memory })
+        let columns = Columns::new(mesh.triangles(), &positions, exec)?;
+        Ok(Self { triangles: mesh.triangles(), positions, bounds, exponent, columns, _memory: memory })
     }
 
     /// Six times the signed volume under some triangles to one of their corners, on the scale of the mesh, in floating point.
@@ -70,29 +74,33 @@ impl<'a> Solid<'a> {
         triangles.iter().map(under).sum()
     }
 
-    /// Where a point lies relative to the whole mesh.
+    /// Where a point lies relative to the mesh.
     ///
     /// # Errors
-    /// A point that is not finite, or loses bits on the mesh's scale. Points outside the mesh's box are outside, whatever their
-    /// bits.
+    /// A point that is not finite, or loses bits on the mesh's scale. Points outside the mesh's box are outside, whatever
+    /// their bits.
     pub fn locate(&self, point: DVec3) -> Result<Location, JudgeError> {
-        self.locate_among(point, 0..self.triangles.len() as u32)
-    }
-
-    /// Where a point lies relative to some of the triangles.
-    ///
-    /// # Errors
-    /// As [`Solid::locate`].
-    ///
-    /// # Panics
-    /// When there is no such triangle.
-    pub fn locate_among(&self, point: DVec3, triangles: impl IntoIterator<Item = u32>) -> Result<Location, JudgeError> {
         if point.is_finite() && !self.bounds.contains(point) {
             return Ok(Location::Off { winding: 0 });
         }
         let point = Scaled::point(point, self.exponent).ok_or(JudgeError::Query { found: point })?;
         let (mut on, mut winding) = (None, 0);
-        for triangle in triangles {
+        self.each_met(point, |triangle, met| match met {
+            Met::On => on = Some(on.map_or(triangle, |before: u32| before.min(triangle))),
+            Met::Ahead(turns) => winding += turns,
+        });
+        Ok(on.map_or(Location::Off { winding }, Location::On))
+    }
+
+    /// The position of a vertex on the mesh's scale.
+    pub(crate) fn position(&self, vertex: u32) -> DVec3 {
+        self.positions[vertex as usize]
+    }
+
+    /// Calls `visit` with each triangle that a point on the mesh's scale lies on, and with those that a ray from it along
+    /// +x passes through; rising.
+    pub(crate) fn each_met(&self, point: DVec3, mut visit: impl FnMut(u32, Met)) {
+        for &triangle in self.columns.around(point) {
             let [a, b, c] = self.triangles[triangle as usize].map(|vertex| self.positions[vertex as usize]);
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
             if point.y < low.y || point.y > high.y || point.z < low.z || point.z > high.z || point.x > high.x {
@@ -107,20 +115,29 @@ impl<'a> Solid<'a> {
             let side = if near { orient3d(a, b, c, point) } else { Ordering::Greater };
             if near && side == Ordering::Equal {
                 if in_triangle(point, [a, b, c]) {
-                    on = Some(on.map_or(triangle, |before: u32| before.min(triangle)));
+                    visit(triangle, Met::On);
                 }
                 continue;
             }
             // The plane lies ahead if the point is behind it as the ray sees it.
-            let ahead = !near || (side == Ordering::Less) == (turns > 0);
-            winding += if ahead { turns } else { 0 };
+            if turns != 0 && (!near || (side == Ordering::Less) == (turns > 0)) {
+                visit(triangle, Met::Ahead(turns));
+            }
         }
-        Ok(on.map_or(Location::Off { winding }, Location::On))
     }
 }
 
-/// How often the triangle, seen along −x, runs around the point, which is moved by less than anything towards +y and by less
-/// than that towards +z.
+/// How a point and the ray from it along +x meet a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Met {
+    /// The point is on it.
+    On,
+    /// The ray passes through, out of the surface or into it.
+    Ahead(i64),
+}
+
+/// How often the triangle, seen along −x, runs around the point, which is moved by less than anything towards −z and by less
+/// than that towards +y.
 fn turns_around(point: DVec3, corners: [DVec3; 3]) -> i64 {
     let flat = |p: DVec3| DVec2::new(p.y, p.z);
     let place = flat(point);
@@ -129,7 +146,7 @@ fn turns_around(point: DVec3, corners: [DVec3; 3]) -> i64 {
         let (u, v) = (flat(corners[k]), flat(corners[(k + 1) % 3]));
         let up = u.y <= place.y && place.y < v.y;
         let down = v.y <= place.y && place.y < u.y;
-        // Moved towards +y, a point of the side is on its right where it runs up.
+        // A point on the side is moved to its right where it runs up, the same for both triangles there.
         if up && orient2d(u, v, place) == Ordering::Greater {
             turns += 1;
         } else if down && orient2d(u, v, place) == Ordering::Less {

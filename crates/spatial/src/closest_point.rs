@@ -1,79 +1,207 @@
 //! Closest-point queries on the hierarchy.
 
 use glam::DVec3;
-use shapeloom_core::{Closest, ClosestPoint};
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::{_mm256_movemask_ps, _mm256_setr_ps};
+
+use multiversion::multiversion;
+use multiversion::target::match_target;
+use shapeloom_core::{Closest, ClosestPoint, Exec, Stop};
 
 use crate::TriangleBvh;
-use crate::hierarchy::{Node, WIDTH};
+use crate::batch_order::{along_curve, answer_all};
 use crate::stack::Stack;
-use crate::triangle_point::closest_on_triangle;
+use crate::triangle_block::{Block, RoughPlace};
+use crate::triangle_point::{Foot, closest_on_triangle};
+use crate::wide_node::{Lanes, Node, Signs, WIDTH, lanes_of, signs};
 
-impl ClosestPoint for TriangleBvh {
-    /// The closest point whose squared distance is at most `max_distance²`, by a walk that opens near boxes first.
-    fn closest_within(&self, query: DVec3, max_distance: f64) -> Option<Closest> {
-        if !query.is_finite() || self.nodes.is_empty() || max_distance.is_nan() || max_distance < 0.0 {
-            return None;
-        }
-        let units = &self.units;
-        let query = query * units.per_unit;
-        let local = query - units.center;
-        // What rounding can do to the place of the query among the boxes.
-        let slack = (query.abs().max_element() + units.center.abs().max_element()) * 2f64.powi(-48);
-        let max_distance = max_distance * units.per_unit;
-        let mut limit = max_distance * max_distance;
-        let mut best: Option<Closest> = None;
-        let mut open: Stack<(f64, u32, u32)> = Stack::new((0.0, 0, 0));
-        open.push((0.0, 0, 0));
-        while let Some((lower, first, count)) = open.pop() {
-            if lower > limit {
-                continue;
-            }
-            for place in first..first + count {
-                let foot = closest_on_triangle(&self.corners[place as usize], query);
-                let found = Closest {
-                    point: foot.point,
-                    distance_squared: foot.distance_squared,
-                    element: self.elements_at(place)[0],
-                    parameters: foot.weights,
-                };
-                let key = |closest: &Closest| (closest.distance_squared, closest.element);
-                if found.distance_squared <= limit && best.as_ref().is_none_or(|best| key(&found) < key(best)) {
-                    limit = found.distance_squared;
-                    best = Some(found);
-                }
-            }
-            if count > 0 {
-                continue;
-            }
-            let node = &self.nodes[first as usize];
-            let lower = lower_bounds(node, local, slack);
-            let bottom = open.len();
-            for lane in (0..WIDTH).filter(|&lane| lower[lane] <= limit) {
-                open.push_sorted(bottom, (lower[lane], node.first[lane], node.count[lane]), |a, b| a.0 > b.0);
-            }
-        }
-        best.map(|best| Closest {
-            point: best.point * units.unit,
-            distance_squared: best.distance_squared * units.unit * units.unit,
-            ..best
-        })
+/// A child to be opened: a squared distance to its box, never too large, and what its node says in `first` and `place`.
+type Open = (f32, u32, u32);
+
+fn stack() -> Stack<Open> {
+    Stack::new((0.0, 0, 0))
+}
+
+/// The best so far: the foot on a stored triangle, in scaled units.
+#[derive(Clone, Copy)]
+struct Best {
+    foot: Foot,
+    element: u32,
+    corners: [DVec3; 3],
+}
+
+impl Best {
+    fn key(&self) -> (f64, u32) {
+        (self.foot.distance_squared, self.element)
     }
 }
 
-/// Squared distances to the boxes of a node, never too large.
-fn lower_bounds(node: &Node, local: DVec3, slack: f64) -> [f64; WIDTH] {
-    std::array::from_fn(|lane| {
-        if node.sides[0][0][lane] > node.sides[1][0][lane] {
-            return f64::NAN;
+/// The closest point whose squared distance is at most `max_distance²`, by a walk that opens near boxes first. The
+/// answer does not depend on `guess`, a triangle to start with; the better it is, the fewer boxes are opened.
+#[inline(always)]
+fn closest(
+    bvh: &TriangleBvh,
+    query: DVec3,
+    max_distance: f64,
+    guess: Option<Best>,
+    open: &mut Stack<Open>,
+    signs: impl Signs,
+) -> Option<Best> {
+    if !query.is_finite() || bvh.nodes.is_empty() || max_distance.is_nan() || max_distance < 0.0 {
+        return None;
+    }
+    let units = &bvh.units;
+    let query = query * units.per_unit;
+    let local = query - units.center;
+    // What rounding can do to the place of the query among the boxes.
+    let slack = (query.abs().max_element() + units.center.abs().max_element()) * 2f64.powi(-48);
+    let max_distance = max_distance * units.per_unit;
+    let mut limit = max_distance * max_distance;
+    if local.abs().max_element() > RoughPlace::FAR {
+        return closest_from_far(bvh, query, limit, slack);
+    }
+    let mut best: Option<Best> = None;
+    if let Some(guess) = guess {
+        let foot = closest_on_triangle(&guess.corners, query);
+        if foot.distance_squared <= limit {
+            limit = foot.distance_squared;
+            best = Some(Best { foot, ..guess });
         }
-        let mut sum = 0.0;
-        for axis in 0..3 {
-            let [low, high] = [0, 1].map(|side| f64::from(node.sides[side][axis][lane]));
-            let gap = ((low - local[axis]).max(local[axis] - high) - slack).max(0.0);
-            sum += gap * gap;
+    }
+    let mut rough = RoughPlace::new(local, units.center - units.block_origin(), slack);
+    rough.set_limit(limit);
+    open.clear();
+    let mut next: Open = (0.0, 0, Node::INNER);
+    loop {
+        let (lower, first, place) = next;
+        if lower > rough.limit {
+        } else if place == Node::INNER {
+            let node = &bvh.nodes[first as usize];
+            let (lower, near) = rough.lower_bounds(node, signs);
+            let child = |lane: usize| (lower[lane], node.first[lane], node.place[lane]);
+            let mut lanes = lanes_of(near);
+            if let Some(lane) = lanes.next() {
+                next = child(lane);
+                let bottom = open.len();
+                for lane in lanes {
+                    let mut other = child(lane);
+                    if other.0 < next.0 {
+                        std::mem::swap(&mut other, &mut next);
+                    }
+                    open.push_sorted(bottom, other, |a, b| a.0 > b.0);
+                }
+                continue;
+            }
+        } else {
+            let block = &bvh.blocks[first as usize];
+            for lane in lanes_of(block.may_be_within(&rough, signs)) {
+                let corners = bvh.corners_at(block, place, lane);
+                let foot = closest_on_triangle(&corners, query);
+                let found = Best { foot, element: block.elements[lane], corners };
+                let better = |best: &Best| found.key() < best.key();
+                if foot.distance_squared <= limit && best.as_ref().is_none_or(better) {
+                    limit = foot.distance_squared;
+                    rough.set_limit(limit);
+                    best = Some(found);
+                }
+            }
         }
-        sum * (1.0 - 1e-14)
-    })
+        match open.pop() {
+            Some(entry) => next = entry,
+            None => return best,
+        }
+    }
+}
+
+/// The same from far away, where `f32` tells too little apart: boxes are measured in `f64`.
+#[cold]
+fn closest_from_far(bvh: &TriangleBvh, query: DVec3, mut limit: f64, slack: f64) -> Option<Best> {
+    let local = query - bvh.units.center;
+    let mut best: Option<Best> = None;
+    let mut open: Stack<(f64, u32, u32)> = Stack::new((0.0, 0, 0));
+    open.push((0.0, 0, Node::INNER));
+    while let Some((lower, first, place)) = open.pop() {
+        if lower > limit {
+            continue;
+        }
+        if place == Node::INNER {
+            let node = &bvh.nodes[first as usize];
+            let bottom = open.len();
+            for lane in (0..WIDTH).filter(|&lane| node.is_used(lane)) {
+                let mut sum = 0.0;
+                for axis in 0..3 {
+                    let [low, high] = [0, 1].map(|side| f64::from(node.sides[side][axis][lane]));
+                    let gap = ((low - local[axis]).max(local[axis] - high) - slack).max(0.0);
+                    sum += gap * gap;
+                }
+                let lower = sum * (1.0 - 1e-14);
+                if lower <= limit {
+                    open.push_sorted(bottom, (lower, node.first[lane], node.place[lane]), |a, b| a.0 > b.0);
+                }
+            }
+            continue;
+        }
+        let block = &bvh.blocks[first as usize];
+        for lane in (0..WIDTH).filter(|&lane| block.elements[lane] != Block::NONE) {
+            let corners = bvh.corners_at(block, place, lane);
+            let found = Best { foot: closest_on_triangle(&corners, query), element: block.elements[lane], corners };
+            let better = |best: &Best| found.key() < best.key();
+            if found.foot.distance_squared <= limit && best.as_ref().is_none_or(better) {
+                limit = found.foot.distance_squared;
+                best = Some(found);
+            }
+        }
+    }
+    best
+}
+
+impl Best {
+    fn answer(&self, unit: f64) -> Closest {
+        Closest {
+            point: self.foot.point * unit,
+            distance_squared: self.foot.distance_squared * unit * unit,
+            element: self.element,
+            parameters: self.foot.weights,
+        }
+    }
+}
+
+// The same arithmetic for processors with and without wide registers: nothing is contracted, so the bits are the same.
+#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
+fn closest_points(bvh: &TriangleBvh, queries: &[DVec3], max_distance: f64, out: &mut [Option<Closest>]) {
+    let signs = |lanes: &Lanes| {
+        match_target! {
+            "x86_64+avx" => {
+                let [a, b, c, d, e, f, g, h] = *lanes;
+                _mm256_movemask_ps(_mm256_setr_ps(a, b, c, d, e, f, g, h)) as u32
+            }
+            _ => signs(lanes),
+        }
+    };
+    let mut open = stack();
+    let mut guess = None;
+    for (&query, out) in queries.iter().zip(out) {
+        let best = closest(bvh, query, max_distance, guess, &mut open, signs);
+        guess = best.or(guess);
+        *out = best.map(|best| best.answer(bvh.units.unit));
+    }
+}
+
+impl ClosestPoint for TriangleBvh {
+    fn closest_within(&self, query: DVec3, max_distance: f64) -> Option<Closest> {
+        let mut out = [None];
+        closest_points(self, &[query], max_distance, &mut out);
+        out[0]
+    }
+
+    /// The closest point to each query, in parallel. Queries are taken along a space-filling curve, each starting with
+    /// the triangle that is closest to the one before; the answers stand in the order of the queries.
+    fn closest_points(&self, queries: &[DVec3], out: &mut [Option<Closest>], exec: &Exec) -> Result<(), Stop> {
+        let keys = |queries: &[DVec3], keys: &mut [u64]| {
+            queries.iter().zip(keys).for_each(|(&query, key)| *key = along_curve(query, &self.units));
+        };
+        answer_all(queries, out, true, exec, keys, |queries, out| closest_points(self, queries, f64::INFINITY, out))
+    }
 }
 
 #[cfg(test)]
@@ -129,6 +257,42 @@ mod tests {
         let (positions, triangles) = bumpy_ball(16, DVec3::ZERO, 1.0, 0.1);
         let queries: Vec<DVec3> = (0..400).map(|_| draws.point() * 1.2).collect();
         assert_laws(&positions, &triangles, &queries);
+    }
+
+    /// Blocks then hold the corners themselves.
+    #[test]
+    fn agrees_with_brute_force_on_coordinates_of_single_precision() {
+        let mut draws = Draws::new(25);
+        let narrow = |p: DVec3| p.as_vec3().as_dvec3();
+        let (positions, triangles) =
+            draws.soup(300, |draws, i| narrow(draws.point() * if i < 600 { 1.0 } else { 0.1 }));
+        let queries: Vec<DVec3> = (0..600).map(|i| draws.point() * f64::from(1 + i % 9)).collect();
+        assert_laws(&positions, &triangles, &queries);
+    }
+
+    #[test]
+    fn agrees_with_brute_force_from_afar() {
+        let mut draws = Draws::new(26);
+        let (positions, triangles) = draws.soup(200, |draws, _| draws.point());
+        let scales = [1e2, 9e2, 1e3, 1.1e3, 1e5, 1e9, 1e14, 1e30];
+        let queries: Vec<DVec3> = (0..400).map(|i| draws.point() * scales[i % scales.len()]).collect();
+        let bvh = TriangleBvh::build(&positions, &triangles, &Exec::default()).unwrap();
+        for query in queries {
+            assert_eq!(bvh.closest(query), Some(brute_force(&positions, &triangles, query)), "{query}");
+        }
+    }
+
+    /// The versions for wide registers and the portable one give the same bits.
+    #[test]
+    fn every_processor_finds_the_same() {
+        let (positions, triangles) = bumpy_ball(40, DVec3::ZERO, 1.0, 0.1);
+        let bvh = TriangleBvh::build(&positions, &triangles, &Exec::default()).unwrap();
+        let mut draws = Draws::new(27);
+        for _ in 0..2000 {
+            let query = draws.point() * 1.5;
+            let portable = closest(&bvh, query, f64::INFINITY, None, &mut stack(), signs);
+            assert_eq!(bvh.closest(query), portable.map(|best| best.answer(bvh.units.unit)));
+        }
     }
 
     #[test]

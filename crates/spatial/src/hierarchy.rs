@@ -1,36 +1,18 @@
-//! The tree of boxes: built two-wide by obvhs, kept four-wide.
+//! The tree of boxes: built two-wide by obvhs, kept eight-wide.
 //!
-//! Four boxes side by side in arrays let the compiler test them against a ray at once. Boxes are `f32` in local units,
+//! Boxes are `f32` in local units,
 //! where the shape's size is about 1, and always hold what they bound.
 
 use obvhs::aabb::Aabb as Box2;
 use obvhs::bvh2::Bvh2;
-use obvhs::bvh2::leaf_collapser::collapse;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 
-/// Children of a node.
-pub(crate) const WIDTH: usize = 4;
-
-/// Four boxes with what they hold. Unused places have a box that nothing meets.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Node {
-    /// `sides[0]` are the smaller and `sides[1]` the larger coordinates, by axis, then by child.
-    pub sides: [[[f32; WIDTH]; 3]; 2],
-    /// The index of a node, or of a leaf's first primitive.
-    pub first: [u32; WIDTH],
-    /// How many primitives a leaf holds; 0 for a node.
-    pub count: [u32; WIDTH],
-}
-
-impl Node {
-    // Finite, so that differences with finite numbers are never NaN.
-    const UNUSED: Self =
-        Self { sides: [[[f32::MAX; WIDTH]; 3], [[f32::MIN; WIDTH]; 3]], first: [0; WIDTH], count: [0; WIDTH] };
-}
+use crate::wide_node::{Node, WIDTH};
 
 /// A box of a primitive in local units.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Bounds {
     pub min: [f32; 3],
     pub max: [f32; 3],
@@ -60,6 +42,8 @@ pub(crate) fn above(value: f64) -> f32 {
 pub(crate) struct Hierarchy {
     /// The root first; empty without primitives.
     pub nodes: Vec<Node>,
+    /// The leaves: where each one's primitives start in the order.
+    pub leaves: Vec<u32>,
     /// The primitive at each place of the leaves.
     pub order: Vec<u32>,
 }
@@ -68,8 +52,6 @@ impl Hierarchy {
     /// Memory that [`Hierarchy::build`] needs for a primitive while it runs: the builder's nodes (48 bytes, five
     /// times), its sort keys and parents, and ours.
     pub const BUILD_BYTES: usize = 400;
-    /// Memory that stays, in bytes a primitive: at worst one node for each three leaves of one primitive.
-    pub const BYTES: usize = 48;
 
     /// A tree over boxes in local units (coordinates of magnitude about 1).
     ///
@@ -85,10 +67,58 @@ impl Hierarchy {
             SortPrecision::U64,
             2,
         );
+        collapse(&mut tree);
+        // More gains nothing that a million rays show.
         ReinsertionOptimizer::default().run(&mut tree, 0.02, None);
-        // Triangle tests in f64 cost about as much as a node of four boxes, so leaves stay small.
-        collapse(&mut tree, 4, 1.0);
-        Self { nodes: widened(&tree), order: tree.primitive_indices }
+        let mut hierarchy = Self { nodes: Vec::new(), leaves: Vec::new(), order: Vec::with_capacity(bounds.len()) };
+        hierarchy.widen(&tree);
+        hierarchy
+    }
+
+    fn widen(&mut self, tree: &Bvh2) {
+        if tree.nodes.is_empty() {
+            return;
+        }
+        self.nodes.push(Node::UNUSED);
+        let mut open = vec![(0u32, 0usize)];
+        let mut lanes: Vec<u32> = Vec::with_capacity(WIDTH);
+        while let Some((from, to)) = open.pop() {
+            let root = &tree.nodes[from as usize];
+            lanes.clear();
+            if root.is_leaf() {
+                lanes.push(from);
+            } else {
+                lanes.extend([root.first_index, root.first_index + 1]);
+            }
+            while lanes.len() < WIDTH {
+                let area = |&lane: &usize| tree.nodes[lanes[lane] as usize].aabb().half_area();
+                let inner = (0..lanes.len()).filter(|&lane| !tree.nodes[lanes[lane] as usize].is_leaf());
+                let Some(largest) = inner.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
+                let first = tree.nodes[lanes[largest] as usize].first_index;
+                lanes[largest] = first;
+                lanes.push(first + 1);
+            }
+            for (lane, &child) in lanes.iter().enumerate() {
+                let child_node = &tree.nodes[child as usize];
+                let (min, max) = (child_node.aabb().min.to_array(), child_node.aabb().max.to_array());
+                for axis in 0..3 {
+                    self.nodes[to].sides[0][axis][lane] = min[axis];
+                    self.nodes[to].sides[1][axis][lane] = max[axis];
+                }
+                if child_node.is_leaf() {
+                    let place = self.order.len() as u32;
+                    self.nodes[to].first[lane] = self.leaves.len() as u32;
+                    self.nodes[to].place[lane] = place;
+                    self.leaves.push(place);
+                    let primitives = child_node.first_index as usize..;
+                    self.order.extend_from_slice(&tree.primitive_indices[primitives][..child_node.prim_count as usize]);
+                } else {
+                    self.nodes[to].first[lane] = self.nodes.len() as u32;
+                    open.push((child, self.nodes.len()));
+                    self.nodes.push(Node::UNUSED);
+                }
+            }
+        }
     }
 }
 
@@ -109,48 +139,63 @@ fn jittered(bounds: Bounds, index: u32) -> Box2 {
     Box2::new(min, max)
 }
 
-fn widened(tree: &Bvh2) -> Vec<Node> {
-    let mut nodes = Vec::new();
-    if tree.nodes.is_empty() {
-        return nodes;
+/// Makes leaves of up to [`WIDTH`] primitives where the surface area heuristic says that this is cheaper. Children must
+/// stand after their parents, as the builder leaves them.
+fn collapse(tree: &mut Bvh2) {
+    /// What a node costs, in primitives. A block of triangles costs about the same however full it is, so leaves should
+    /// be full: at 5 rays take longer for the blocks, at 12 for the boxes that grow too large.
+    const NODE_COST: f32 = 7.0;
+    let count = tree.nodes.len();
+    if count == 0 {
+        return;
     }
-    nodes.push(Node::UNUSED);
-    let mut open = vec![(0u32, 0usize)];
-    let mut lanes: Vec<u32> = Vec::with_capacity(WIDTH);
-    while let Some((from, to)) = open.pop() {
-        let root = &tree.nodes[from as usize];
-        lanes.clear();
-        if root.is_leaf() {
-            lanes.push(from);
+    // How many primitives are below each node, and whether it becomes or is a leaf.
+    let mut below = vec![(0u32, false); count];
+    for index in (0..count).rev() {
+        let node = &tree.nodes[index];
+        below[index] = if node.is_leaf() {
+            (node.prim_count, true)
         } else {
-            lanes.extend([root.first_index, root.first_index + 1]);
+            let children = [node.first_index as usize, node.first_index as usize + 1];
+            let primitives = below[children[0]].0 + below[children[1]].0;
+            let apart: f32 =
+                children.iter().map(|&child| tree.nodes[child].aabb().half_area() * below[child].0 as f32).sum();
+            let together = node.aabb().half_area() * (primitives as f32 - NODE_COST);
+            let leaves = children.iter().all(|&child| below[child].1);
+            (primitives, leaves && primitives <= WIDTH as u32 && together <= apart)
+        };
+    }
+    let mut order = vec![0; tree.primitive_indices.len()];
+    // Where each node's primitives start in the new order, and the node that it becomes.
+    let mut starts = vec![(0u32, 0u32); count];
+    let mut inside = vec![false; count];
+    let mut nodes: Vec<Bvh2Node> = Vec::with_capacity(count / 3);
+    nodes.push(Bvh2Node::default());
+    for index in 0..count {
+        let node = tree.nodes[index];
+        let (start, to) = starts[index];
+        let leaf = below[index].1;
+        if leaf && !inside[index] {
+            nodes[to as usize] = Bvh2Node::new(*node.aabb(), below[index].0, start);
         }
-        while lanes.len() < WIDTH {
-            let area = |&lane: &usize| tree.nodes[lanes[lane] as usize].aabb().half_area();
-            let inner = (0..lanes.len()).filter(|&lane| !tree.nodes[lanes[lane] as usize].is_leaf());
-            let Some(largest) = inner.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
-            let first = tree.nodes[lanes[largest] as usize].first_index;
-            lanes[largest] = first;
-            lanes.push(first + 1);
+        if node.is_leaf() {
+            let primitives = &tree.primitive_indices[node.first_index as usize..][..node.prim_count as usize];
+            order[start as usize..][..primitives.len()].copy_from_slice(primitives);
+            continue;
         }
-        for (lane, &child) in lanes.iter().enumerate() {
-            let child_node = &tree.nodes[child as usize];
-            let (min, max) = (child_node.aabb().min.to_array(), child_node.aabb().max.to_array());
-            for axis in 0..3 {
-                nodes[to].sides[0][axis][lane] = min[axis];
-                nodes[to].sides[1][axis][lane] = max[axis];
-            }
-            if child_node.is_leaf() {
-                nodes[to].first[lane] = child_node.first_index;
-                nodes[to].count[lane] = child_node.prim_count;
-            } else {
-                nodes[to].first[lane] = nodes.len() as u32;
-                open.push((child, nodes.len()));
-                nodes.push(Node::UNUSED);
-            }
+        let [left, right] = [node.first_index as usize, node.first_index as usize + 1];
+        let first = nodes.len() as u32;
+        starts[left] = (start, first);
+        starts[right] = (start + below[left].0, first + 1);
+        (inside[left], inside[right]) = (leaf, leaf);
+        if !leaf {
+            nodes[to as usize] = Bvh2Node::new(*node.aabb(), 0, first);
+            nodes.extend([Bvh2Node::default(); 2]);
         }
     }
-    nodes
+    tree.nodes = nodes;
+    tree.primitive_indices = order;
+    tree.parents = Vec::new();
 }
 
 #[cfg(test)]
@@ -167,15 +212,19 @@ mod tests {
             let node = &hierarchy.nodes[index];
             for lane in 0..WIDTH {
                 let (min, max) = ([0, 1, 2].map(|a| node.sides[0][a][lane]), [0, 1, 2].map(|a| node.sides[1][a][lane]));
-                if min[0] > max[0] {
+                if !node.is_used(lane) {
                     continue;
                 }
                 assert!((0..3).all(|a| min[a] >= low[a] && max[a] <= high[a]));
-                if node.count[lane] == 0 {
+                if node.place[lane] == Node::INNER {
                     open.push((node.first[lane] as usize, min, max, depth + 1));
+                    continue;
                 }
-                for place in node.first[lane]..node.first[lane] + node.count[lane] {
-                    let primitive = hierarchy.order[place as usize] as usize;
+                let leaf = node.first[lane] as usize;
+                assert_eq!(hierarchy.leaves[leaf], node.place[lane]);
+                let end = hierarchy.leaves.get(leaf + 1).map_or(bounds.len(), |&end| end as usize);
+                for &primitive in &hierarchy.order[node.place[lane] as usize..end] {
+                    let primitive = primitive as usize;
                     seen[primitive] += 1;
                     let held = &bounds[primitive];
                     assert!((0..3).all(|a| held.min[a] >= min[a] && held.max[a] <= max[a]));

@@ -18,6 +18,7 @@
 //! # Ok::<(), shapeloom_spatial::BvhError>(())
 //! ```
 
+mod batch_order;
 mod box_pairs;
 mod closed;
 mod closest_point;
@@ -26,16 +27,21 @@ mod error;
 #[cfg(test)]
 mod fixtures;
 mod hierarchy;
+#[cfg(test)]
+mod leak_tests;
 mod rays;
 mod signed_distance;
 mod space_order;
 mod stack;
+mod triangle_block;
 mod triangle_bvh;
 mod triangle_point;
 mod triangle_ray;
+mod wide_node;
 mod winding;
 
 pub use box_pairs::BoxPairs;
+pub use closed::is_closed;
 pub use error::BvhError;
 pub use signed_distance::{InsideRule, SignedClosest, SignedDistance};
 pub use triangle_bvh::TriangleBvh;

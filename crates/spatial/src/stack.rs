@@ -7,19 +7,24 @@ pub(crate) struct Stack<T> {
     deep: Vec<T>,
 }
 
-/// Four-wide trees over a million primitives keep under 40 entries open.
-const NEAR: usize = 48;
+/// Eight-wide trees over a million triangles keep under 60 entries open.
+const NEAR: usize = 64;
 
 impl<T: Copy> Stack<T> {
     pub fn new(filler: T) -> Self {
         Self { near: [filler; NEAR], len: 0, deep: Vec::new() }
     }
 
+    pub fn clear(&mut self) {
+        self.len = 0;
+        self.deep.clear();
+    }
+
     pub fn len(&self) -> usize {
         self.len
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn push(&mut self, entry: T) {
         if self.len < NEAR {
             self.near[self.len] = entry;
@@ -29,7 +34,7 @@ impl<T: Copy> Stack<T> {
         self.len += 1;
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
         self.len = self.len.checked_sub(1)?;
         if self.len < NEAR { Some(self.near[self.len]) } else { self.deep.pop() }
@@ -37,7 +42,7 @@ impl<T: Copy> Stack<T> {
 
     /// Pushes an entry below those from `bottom` on that must leave before it: `after(a, b)` says that `a` leaves
     /// after `b`.
-    #[inline]
+    #[inline(always)]
     pub fn push_sorted(&mut self, bottom: usize, entry: T, after: impl Fn(&T, &T) -> bool) {
         self.push(entry);
         let mut place = self.len - 1;
@@ -48,7 +53,7 @@ impl<T: Copy> Stack<T> {
         *self.at(place) = entry;
     }
 
-    #[inline]
+    #[inline(always)]
     fn at(&mut self, place: usize) -> &mut T {
         if place < NEAR { &mut self.near[place] } else { &mut self.deep[place - NEAR] }
     }

@@ -2,13 +2,17 @@
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
-use shapeloom_core::{Aabb, Exec, Reservation};
+use shapeloom_core::parallel::{fill_chunks, map_chunks};
+use shapeloom_core::{Aabb, Exec, Reservation, Stop};
 
 use crate::BvhError;
 use crate::equal_triangles::Groups;
-use crate::hierarchy::{Bounds, Hierarchy, Node};
+use crate::hierarchy::{Bounds, Hierarchy};
+use crate::triangle_block::Block;
+use crate::wide_node::Node;
 
 /// A bounding volume hierarchy over triangles, for rays and closest points.
 ///
@@ -18,18 +22,20 @@ use crate::hierarchy::{Bounds, Hierarchy, Node};
 /// ray but have closest points. Elements are the triangles' places in the given slice.
 ///
 /// Equal triangles (the same three corners in the same order) are stored once; [`all_hits`](shapeloom_core::Rays) still
-/// names each of them. Memory: about 130 bytes a triangle, reserved as long as the hierarchy lives; about 400 more while
-/// it is built. A query costs about the logarithm of the number of triangles.
+/// names each of them. Memory: about 75 bytes a triangle where all coordinates are numbers of single precision and the
+/// shape lies near the origin, else about 150, reserved as long as the hierarchy lives; about 400 more while it is built.
+/// A query costs about the logarithm of the number of triangles.
 pub struct TriangleBvh {
     pub(crate) nodes: Vec<Node>,
-    /// Corners in scaled units, in the order of the leaves.
-    pub(crate) corners: Vec<[DVec3; 3]>,
-    /// Where the elements of each stored triangle start, one more than there are.
-    starts: Vec<u32>,
-    elements: Vec<u32>,
+    /// The leaves.
+    pub(crate) blocks: Vec<Block>,
+    /// Corners in scaled units, in the order of the leaves; none where the blocks hold them exactly.
+    corners: Vec<[DVec3; 3]>,
+    groups: Groups,
+    len: usize,
     bounds: Aabb,
     pub(crate) units: Units,
-    _memory: Reservation,
+    _memory: Vec<Reservation>,
 }
 
 /// Scaled units, a power of two apart from the model's so that scaling is exact, in which the shape has a size of about
@@ -54,6 +60,14 @@ impl Units {
     }
 }
 
+impl Units {
+    /// The origin of blocks, in scaled units: none where the shape lies near it, so that coordinates given in single
+    /// precision are held exactly.
+    pub fn block_origin(&self) -> DVec3 {
+        if self.center.abs().max_element() <= 2.0 { DVec3::ZERO } else { self.center }
+    }
+}
+
 impl TriangleBvh {
     /// Builds the hierarchy over `triangles`, index triples into `positions`.
     ///
@@ -68,7 +82,6 @@ impl TriangleBvh {
         if triangles.len() >= u32::MAX as usize {
             return Err(BvhError::TooMany { found: triangles.len() });
         }
-        let memory = exec.reserve_elements(triangles.len() as u64, Self::BYTES)?;
         let scratch = exec.reserve_elements(triangles.len() as u64, Hierarchy::BUILD_BYTES)?;
         let bounds = checked_bounds(positions, triangles, exec)?;
         let units = Units::new(&bounds);
@@ -77,44 +90,66 @@ impl TriangleBvh {
             // Adding zero turns -0 into 0, so that equal corners have equal bits.
             triangles[element as usize].map(|index| positions[index as usize] * units.per_unit + DVec3::ZERO)
         };
-        let groups = Groups::of_equal(triangles.len() as u32, corners_of);
+        let groups = Groups::of_equal(triangles.len() as u32, corners_of, exec)?;
         exec.check()?;
         exec.progress(0.3);
-        let boxes: Vec<Bounds> = (0..groups.len())
-            .map(|group| {
-                let local = corners_of(groups.get(group)[0]).map(|corner| corner - units.center);
-                let around = Aabb::from_points(local);
-                Bounds::outward(around.min.to_array(), around.max.to_array())
-            })
-            .collect();
+        let mut boxes = vec![Bounds::default(); groups.len()];
+        fill_chunks(exec, &mut boxes, 1 << 13, |first, part| {
+            for (group, bounds) in (first..).zip(part) {
+                let [a, b, c] = corners_of(groups.leader(group)).map(|corner| corner - units.center);
+                *bounds = Bounds::outward(a.min(b).min(c).to_array(), a.max(b).max(c).to_array());
+            }
+            Ok::<(), Stop>(())
+        })?;
         let hierarchy = Hierarchy::build(&boxes);
         exec.check()?;
         exec.progress(0.9);
-        let mut corners = Vec::with_capacity(groups.len());
-        let mut starts = Vec::with_capacity(groups.len() + 1);
-        let mut elements = Vec::with_capacity(triangles.len());
-        for &place in &hierarchy.order {
-            let group = groups.get(place as usize);
-            corners.push(corners_of(group[0]));
-            starts.push(elements.len() as u32);
-            elements.extend_from_slice(group);
+        let Hierarchy { nodes, leaves, mut order } = hierarchy;
+        for primitive in &mut order {
+            *primitive = groups.leader(*primitive as usize);
         }
-        starts.push(elements.len() as u32);
+        let bytes = nodes.capacity() * size_of::<Node>() + leaves.len() * size_of::<Block>() + groups.bytes();
+        let mut memory = vec![exec.reserve(bytes as u64)?];
+        let mut blocks = vec![Block::EMPTY; leaves.len()];
+        let inexact = AtomicBool::new(false);
+        fill_chunks(exec, &mut blocks, 1 << 11, |first, part| {
+            let mut all_exact = true;
+            for (leaf, block) in (first..).zip(part) {
+                let end = leaves.get(leaf + 1).map_or(order.len(), |&end| end as usize);
+                let leaf = order[leaves[leaf] as usize..end].iter();
+                let exact;
+                (*block, exact) = Block::of(leaf.map(|&element| (element, corners_of(element))), units.block_origin());
+                all_exact &= exact;
+            }
+            if !all_exact {
+                inexact.store(true, Ordering::Relaxed);
+            }
+            Ok::<(), Stop>(())
+        })?;
+        let mut corners = Vec::new();
+        if inexact.into_inner() {
+            memory.push(exec.reserve_elements(order.len() as u64, size_of::<[DVec3; 3]>())?);
+            corners = vec![[DVec3::ZERO; 3]; order.len()];
+            fill_chunks(exec, &mut corners, 1 << 13, |first, part| {
+                for (corners, &element) in part.iter_mut().zip(&order[first..]) {
+                    *corners = corners_of(element);
+                }
+                Ok::<(), Stop>(())
+            })?;
+        }
         drop(scratch);
         exec.progress(1.0);
-        Ok(Self { nodes: hierarchy.nodes, corners, starts, elements, bounds, units, _memory: memory })
+        Ok(Self { nodes, blocks, corners, groups, len: triangles.len(), bounds, units, _memory: memory })
     }
-
-    const BYTES: usize = size_of::<[DVec3; 3]>() + 2 * size_of::<u32>() + Hierarchy::BYTES;
 
     /// How many triangles there are, equal ones counted each.
     pub fn len(&self) -> usize {
-        self.elements.len()
+        self.len
     }
 
     /// Whether there is no triangle.
     pub fn is_empty(&self) -> bool {
-        self.elements.is_empty()
+        self.len == 0
     }
 
     /// The box around the triangles; empty without any.
@@ -124,13 +159,21 @@ impl TriangleBvh {
 
     /// How many different triangles there are: what is stored and searched.
     pub fn distinct(&self) -> usize {
-        self.corners.len()
+        self.groups.len()
     }
 
-    /// The elements with the corners of a stored triangle, rising.
-    pub(crate) fn elements_at(&self, place: u32) -> &[u32] {
-        let range = self.starts[place as usize] as usize..self.starts[place as usize + 1] as usize;
-        &self.elements[range]
+    /// The corners of a stored triangle, in scaled units.
+    #[inline(always)]
+    pub(crate) fn corners_at(&self, block: &Block, place: u32, lane: usize) -> [DVec3; 3] {
+        match self.corners.get(place as usize + lane) {
+            Some(corners) => *corners,
+            None => block.triangle(lane),
+        }
+    }
+
+    /// The other elements with the corners of a stored triangle, given its smallest element.
+    pub(crate) fn twins_of(&self, element: u32) -> impl Iterator<Item = u32> {
+        self.groups.twins_of(element)
     }
 }
 
@@ -146,7 +189,7 @@ impl fmt::Debug for TriangleBvh {
 }
 
 fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]], exec: &Exec) -> Result<Aabb, BvhError> {
-    let parts = shapeloom_core::parallel::map_chunks(exec, triangles.len(), 1 << 14, |range: Range<usize>| {
+    let parts = map_chunks(exec, triangles.len(), 1 << 14, |range: Range<usize>| {
         let mut bounds = Aabb::EMPTY;
         for triangle in range {
             for (corner, &found) in triangles[triangle].iter().enumerate() {
@@ -157,7 +200,7 @@ fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]], exec: &Exec) -> R
                 if !position.is_finite() {
                     return Err(BvhError::NotFinite { triangle, position: found, found: position });
                 }
-                bounds = bounds.including(position);
+                bounds = Aabb { min: bounds.min.min(position), max: bounds.max.max(position) };
             }
         }
         Ok(bounds)
@@ -193,7 +236,8 @@ mod tests {
         assert_eq!(stopped.unwrap_err(), BvhError::Stop(Stop::Cancelled));
         let exec = Exec::default();
         let bvh = TriangleBvh::build(&positions, &triangles, &exec).unwrap();
-        let stored = bvh.nodes.len() * size_of::<Node>() + bvh.corners.len() * 72 + 8 * bvh.len();
+        let stored =
+            bvh.nodes.len() * size_of::<Node>() + bvh.corners.len() * 72 + bvh.blocks.len() * size_of::<Block>();
         assert!(exec.memory_taken() >= stored as u64, "{} {stored}", exec.memory_taken());
         drop(bvh);
         assert_eq!(exec.memory_taken(), 0);

@@ -14,6 +14,7 @@ pub(crate) struct Foot {
 ///
 /// The minimum over the three sides and, where the plane's foot falls inside, that foot. Each candidate is a point of
 /// the triangle whatever rounding does, so thin triangles and those without area get a true distance to a true point.
+#[inline(always)]
 pub(crate) fn closest_on_triangle(corners: &[DVec3; 3], query: DVec3) -> Foot {
     let [a, b, c] = *corners;
     let (ab, ac, bc) = (b - a, c - a, c - b);
@@ -48,12 +49,14 @@ pub(crate) fn closest_on_triangle(corners: &[DVec3; 3], query: DVec3) -> Foot {
 }
 
 /// Where along a side the foot of a point falls, in `[0, 1]`; 0 on a side of no length.
+#[inline(always)]
 fn fraction(side: DVec3, from_start: DVec3) -> f64 {
     let t = from_start.dot(side) / side.length_squared();
     if t > 0.0 { t.min(1.0) } else { 0.0 }
 }
 
 /// The point at a fraction, exactly an end at 0 and 1.
+#[inline(always)]
 fn between(start: DVec3, end: DVec3, fraction: f64) -> DVec3 {
     if fraction == 1.0 { end } else { start + (end - start) * fraction }
 }

@@ -14,8 +14,8 @@ use shapeloom_core::predicates::orient2d;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
     origin: DVec3,
-    axes: [usize; 3],
-    slope: DVec2,
+    pub axes: [usize; 3],
+    pub slope: DVec2,
     stretch: f64,
 }
 
@@ -32,6 +32,7 @@ pub(crate) struct Crossing {
 
 impl Shear {
     /// Prepares the line through `origin` along the unit vector `direction`.
+    #[inline(always)]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         let size = direction.abs();
         let z = if size.z >= size.x && size.z >= size.y {
@@ -46,16 +47,11 @@ impl Shear {
         if direction[z] < 0.0 {
             std::mem::swap(&mut x, &mut y);
         }
-        let along = direction[z];
-        Self {
-            origin,
-            axes: [x, y, z],
-            slope: DVec2::new(direction[x] / along, direction[y] / along),
-            stretch: 1.0 / along,
-        }
+        let stretch = 1.0 / direction[z];
+        Self { origin, axes: [x, y, z], slope: DVec2::new(direction[x], direction[y]) * stretch, stretch }
     }
 
-    #[inline]
+    #[inline(always)]
     fn image(&self, corner: DVec3) -> (DVec2, f64) {
         let local = corner - self.origin;
         let [x, y, z] = self.axes;
@@ -64,7 +60,7 @@ impl Shear {
     }
 
     /// Where the line meets the closed triangle; none beside it and where it is seen from its edge.
-    #[inline]
+    #[inline(always)]
     pub fn cross(&self, corners: &[DVec3; 3]) -> Option<Crossing> {
         let (a, depth_a) = self.image(corners[0]);
         let (b, depth_b) = self.image(corners[1]);
@@ -90,7 +86,7 @@ impl Shear {
 }
 
 /// The cross product `p × q` with the sign of exact arithmetic.
-#[inline]
+#[inline(always)]
 fn edge(p: DVec2, q: DVec2) -> f64 {
     let (left, right) = (p.x * q.y, p.y * q.x);
     let value = left - right;

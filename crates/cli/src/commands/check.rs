@@ -1,13 +1,12 @@
 //! `check`: whether a shape is sound for a purpose.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 use shapeloom_convert::{Job, convert_shape, plan};
 use shapeloom_core::{Category, ChoiceOption, Convert, Exec, Findings, Place};
-use shapeloom_judge::{MeshRef, NotPolyhedron, PairKind, Profile, Verdict};
-use shapeloom_mesh::{PolyMesh, TriMesh, TriangulatePolygons, Weld};
+use shapeloom_judge::{Measures, MeshRef, NotPolyhedron, PairKind, Profile, Verdict};
+use shapeloom_mesh::{MeshOrigins, Origins, PolyMesh, TriMesh, Weld, carry};
 use shapeloom_shape::{Geometry, Kind, Shape};
 
 use super::convert::{absolute, wish};
@@ -17,7 +16,7 @@ use crate::failure::Failure;
 use crate::input;
 use crate::session::Session;
 use crate::settings::Settings;
-use crate::soundness::Soundness;
+use crate::soundness::{Soundness, witnesses};
 
 pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Result<(), Failure> {
     let tolerance = arguments.way.tolerance()?;
@@ -44,14 +43,15 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
     let (mut parts, mut sound) = (Vec::new(), true);
     for subject in &subjects {
         let exec = session.exec();
-        let (verdict, mut object) = match &*subject.mesh {
-            Geometry::TriMesh(mesh) => judged(mesh, profile, &exec)?,
-            Geometry::PolyMesh(mesh) => judged(mesh, profile, &exec)?,
+        let judged = match &*subject.mesh {
+            Geometry::TriMesh(mesh) => judged(mesh, profile, &exec),
+            Geometry::PolyMesh(mesh) => judged(mesh, profile, &exec),
             _ => continue,
         };
+        let (verdict, mut object) = judged.map_err(|failure| failure.about(&arguments.input))?;
         sound &= verdict.findings.is_empty();
         object.extend(subject.keys.clone());
-        words.extend(subject.remark.iter().map(|remark| format!("{}: {remark}", subject.named)));
+        words.extend(subject.remarks.iter().map(|remark| format!("{}: {remark}", subject.named)));
         for finding in &verdict.findings {
             words.push(format!("{}: {}", subject.named, told(finding, session.globals.verbose)));
         }
@@ -81,7 +81,7 @@ struct Subject {
     keys: Map<String, Value>,
     mesh: Arc<Geometry>,
     /// What was done to it.
-    remark: Option<String>,
+    remarks: Vec<String>,
 }
 
 /// The parts that have faces, or all of them as one; what has none is said.
@@ -105,18 +105,20 @@ fn subjects(
         };
         let keys = [("part", json!(index)), ("name", json!(part.name)), ("kind", json!(kind.name()))];
         let keys = keys.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
-        found.push(Subject { named, keys, mesh, remark });
+        found.push(Subject { named, keys, mesh, remarks: remark.into_iter().collect() });
     }
     if arguments.together && found.len() > 1 {
         let named = format!("{} parts together", found.len());
         let keys = Map::from_iter([("together".to_owned(), json!(found.len()))]);
         let mesh = Arc::new(joined(&found, exec)?);
-        found = vec![Subject { named, keys, mesh, remark: None }];
+        let remarks = found.iter().flat_map(|one| one.remarks.iter().map(|remark| format!("{}: {remark}", one.named)));
+        let remarks = remarks.collect();
+        found = vec![Subject { named, keys, mesh, remarks }];
     }
     if arguments.weld {
         for subject in &mut found {
             let merged = weld(subject, exec)?;
-            subject.remark = Some(format!("{merged} vertices were merged with others at the same position"));
+            subject.remarks.push(format!("{merged} vertices were merged with others at the same position"));
         }
     }
     Ok(found)
@@ -153,16 +155,30 @@ fn joined(subjects: &[Subject], exec: &Exec) -> Result<Geometry, Failure> {
     })
 }
 
-/// Merges vertices at the same position, and returns how many went.
+/// Merges vertices at the same position, and returns how many went. Polygons stay polygons.
 fn weld(subject: &mut Subject, exec: &Exec) -> Result<usize, Failure> {
-    let triangles: Cow<'_, TriMesh> = match &*subject.mesh {
-        Geometry::TriMesh(mesh) => Cow::Borrowed(mesh),
-        Geometry::PolyMesh(mesh) => Cow::Owned(TriangulatePolygons::new().convert_with(mesh, exec)?.value),
+    let (merged, welded): (usize, Geometry) = match &*subject.mesh {
+        Geometry::TriMesh(mesh) => {
+            let welded = Weld::new().convert_with(mesh, exec)?.value;
+            (mesh.positions().len() - welded.positions().len(), welded.into())
+        }
+        Geometry::PolyMesh(mesh) => {
+            let _memory = exec.reserve(mesh.memory_bytes() as u64)?;
+            let doubled = Measures::of(mesh, exec)?.coincident_vertices;
+            let mut number: Vec<u32> = (0..mesh.positions().len() as u32).collect();
+            doubled.iter().for_each(|&[first, later]| number[later as usize] = first);
+            let kept: Vec<u32> = (0..number.len() as u32).filter(|&vertex| number[vertex as usize] == vertex).collect();
+            let place = |vertex: u32| kept.partition_point(|&kept| kept < number[vertex as usize]) as u32;
+            let corners = mesh.wedge_vertices().iter().map(|&vertex| place(vertex)).collect();
+            let positions = kept.iter().map(|&vertex| mesh.positions()[vertex as usize]).collect();
+            let origins = MeshOrigins { vertex: Origins::Copies(kept), face: Origins::Same, wedge: Origins::Same };
+            let (attributes, _) = carry(mesh.attributes(), &origins);
+            let welded = PolyMesh::with_attributes(positions, mesh.face_starts().to_vec(), corners, attributes)?;
+            (doubled.len(), welded.into())
+        }
         _ => return Ok(0),
     };
-    let welded = Weld::new().convert_with(&*triangles, exec)?.value;
-    let merged = triangles.positions().len() - welded.positions().len();
-    subject.mesh = Arc::new(welded.into());
+    subject.mesh = Arc::new(welded);
     Ok(merged)
 }
 
@@ -211,6 +227,7 @@ fn judged<'a>(
             Err(why) => json!({ "is": false, "why": why_not(why) }),
         },
     );
+    object.insert("witnesses".into(), witnesses(&verdict.topology, Some(&verdict.measures)));
     object.insert("findings".into(), account::findings(&verdict.findings));
     Ok((verdict, object))
 }
@@ -221,6 +238,7 @@ fn why_not(why: NotPolyhedron) -> String {
         NotPolyhedron::Edge([a, b]) => format!("{} has not two faces", Place::edge(a, b)),
         NotPolyhedron::Vertex(vertex) => format!("the faces at vertex {vertex} are not one fan"),
         NotPolyhedron::Apart([a, b]) => format!("{} are not joined", Place::pair("faces", a, b)),
+        NotPolyhedron::Doubled([a, b]) => format!("{} lie in one place", Place::pair("vertices", a, b)),
         NotPolyhedron::Meeting([a, b]) => format!("{} meet", Place::pair("faces", a, b)),
     }
 }
@@ -236,5 +254,6 @@ fn told(finding: &shapeloom_core::Finding, all: bool) -> String {
         (false, 0) => format!(" ({})", places.join(", ")),
         (false, rest) => format!(" ({} and {rest} more)", places.join(", ")),
     };
-    format!("{}[{}]: {}{places}", "warning", finding.code, finding.message)
+    let times = if finding.count > 1 { format!(" {} times", finding.count) } else { String::new() };
+    format!("[{}]{times}: {}{places}", finding.code, finding.message)
 }

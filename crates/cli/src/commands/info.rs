@@ -25,7 +25,8 @@ pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Resul
         return Err(Failure::usage("E-usage-setting", message));
     }
     let mut findings = input.read.findings.clone();
-    let mut object = describe(&input.read.shape, &mut findings, &session.exec())?;
+    let described = describe(&input.read.shape, &mut findings, &session.exec());
+    let mut object = described.map_err(|failure| failure.about(&arguments.input))?;
     object.insert("schema".into(), json!("shapeloom.info/1"));
     object.insert("file".into(), json!(input.name));
     object.insert("format".into(), json!(input.format.id));
@@ -130,11 +131,12 @@ impl Totals {
         findings: &mut Findings,
         exec: &Exec,
     ) -> Result<(), Failure> {
-        let found = Soundness::of(mesh, exec, findings)?;
+        let (found, witnesses) = Soundness::of(mesh, exec, findings)?;
         if self.brief {
-            found.tell_briefly(part)
+            found.tell_briefly(part);
         } else {
-            found.tell(part)
+            found.tell(part);
+            part.insert("witnesses".into(), witnesses);
         }
         self.soundness = Some(match self.soundness.take() {
             Some(before) => before.with(&found),
@@ -260,6 +262,39 @@ fn polygon(
     Ok(())
 }
 
+/// The order in which a reader wants to know; the rest follows by name.
+const ORDER: [&str; 29] = [
+    "bytes",
+    "memory_bytes",
+    "up",
+    "unit_in_meters",
+    "bounds",
+    "diagonal",
+    "vertices",
+    "edges",
+    "faces",
+    "triangles",
+    "area",
+    "volume",
+    "components",
+    "closed",
+    "manifold",
+    "orientable",
+    "oriented",
+    "euler_characteristic",
+    "genus",
+    "genus_is",
+    "handles",
+    "crosscaps",
+    "boundary_loops",
+    "boundary_edges",
+    "non_manifold_edges",
+    "non_manifold_vertices",
+    "inconsistent_edges",
+    "degenerate_faces",
+    "duplicate_faces",
+];
+
 /// The object in lines of words: single values first, then what has a line each.
 fn words(object: &Map<String, Value>) -> String {
     let text = |value: &Value| match value {
@@ -270,7 +305,10 @@ fn words(object: &Map<String, Value>) -> String {
         .into_iter()
         .filter_map(|key| Some(format!("{key}: {}", text(object.get(key)?))))
         .collect();
-    for (key, value) in object.iter().filter(|(_, value)| !value.is_array()) {
+    let rank = |key: &str| ORDER.iter().position(|known| *known == key).unwrap_or(ORDER.len());
+    let mut keys: Vec<(&String, &Value)> = object.iter().filter(|(_, value)| !value.is_array()).collect();
+    keys.sort_by_key(|(key, _)| rank(key));
+    for (key, value) in keys {
         if ["schema", "file", "format", "kind"].contains(&key.as_str()) {
             continue;
         }

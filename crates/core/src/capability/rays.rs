@@ -49,4 +49,21 @@ pub trait Rays: Send + Sync {
             Ok(())
         })
     }
+
+    /// Whether each ray has a hit, in parallel: occlusion.
+    ///
+    /// # Errors
+    /// The reason to stop.
+    ///
+    /// # Panics
+    /// When the slices differ in length.
+    fn any_hits(&self, rays: &[Ray], out: &mut [bool], exec: &Exec) -> Result<(), Stop> {
+        assert_eq!(rays.len(), out.len(), "slices of one length");
+        parallel::fill_chunks(exec, out, 256, |first, part| {
+            for (ray, met) in rays[first..].iter().zip(part) {
+                *met = self.any_hit(ray);
+            }
+            Ok(())
+        })
+    }
 }

@@ -44,7 +44,11 @@ pub const RULES: [Rule; 17] = [
     },
     Rule { code: "W-check-volume", wants: "a closed surface encloses a volume above 0", profiles: &[Profile::Print] },
     Rule { code: "W-check-degenerate", wants: "every face has an area and names no vertex twice", profiles: ALL },
-    Rule { code: "W-check-duplicate", wants: "no face repeats another", profiles: ALL },
+    Rule {
+        code: "W-check-duplicate",
+        wants: "no face repeats another, by its vertices or by its corners' places",
+        profiles: ALL,
+    },
     Rule { code: "W-check-polygon", wants: "no polygon meets itself", profiles: ALL },
     Rule { code: "W-check-crossing", wants: "no face passes through another", profiles: SOLID },
     Rule {
@@ -54,7 +58,7 @@ pub const RULES: [Rule; 17] = [
     },
     Rule {
         code: "W-check-contact",
-        wants: "faces touch in nothing but shared sides and corners",
+        wants: "faces touch in nothing but shared sides and corners, and no two vertices lie in one place",
         profiles: &[Profile::Simulation],
     },
     Rule { code: "W-check-isolated", wants: "every vertex has a face", profiles: &[Profile::General, Profile::Game] },

@@ -1,18 +1,23 @@
 //! Closed shells: which way they face, and how they lie in one another.
 
+use std::collections::BTreeMap;
+
+use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Exec};
 use shapeloom_mesh::TriMesh;
 
-use crate::{JudgeError, Location, Solid, Topology};
+use crate::scaled::exact_middle;
+use crate::solid::Met;
+use crate::{JudgeError, Solid, Topology};
 
 /// A closed component whose faces turn alike and which encloses a volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shell {
-    /// The component, as numbered in [`Topology::components`].
-    pub component: u32,
+    /// Its smallest face.
+    pub first_face: u32,
     /// Whether its faces look outward: its signed volume, in floating point, is above 0.
     pub outward: bool,
-    /// How many other shells it lies in; decided exactly at one of its vertices.
+    /// How many other shells it lies in, decided exactly.
     pub depth: u32,
 }
 
@@ -24,54 +29,85 @@ impl Shell {
     }
 }
 
-/// The shells of a mesh of triangles with that report. A shell whose every vertex lies on another is taken to be outside it.
+/// The shells of a mesh of triangles with that report.
 ///
-/// Cost: for each shell the triangles of those whose boxes hold its own.
+/// Whether one lies in another is asked at its vertices, the middles of its sides and points in its faces, until one is
+/// not on the other. Middles that are no numbers exactly are passed over; a shell of which no point tells is taken to be
+/// outside.
+///
+/// Cost: a ray for each shell, and more where shells touch.
 pub(super) fn shells(mesh: &TriMesh, topology: &Topology, exec: &Exec) -> Result<Vec<Shell>, JudgeError> {
-    let (triangles, positions) = (mesh.triangles(), mesh.positions());
-    let _memory = exec.reserve(triangles.len() as u64 * 4 + topology.components.len() as u64 * 80)?;
+    let triangles = mesh.triangles();
+    let _memory = exec.reserve(triangles.len() as u64 * 8 + topology.components.len() as u64 * 64)?;
     let members = Members::new(topology);
-    // A vertex of an edge with one face, with many or with faces that do not turn alike is on no shell.
-    let edges =
-        topology.boundary.edges().iter().chain(&topology.non_manifold_edges).chain(&topology.inconsistent_edges);
-    let mut faulty: Vec<u32> = edges.flatten().copied().collect();
-    faulty.sort_unstable();
-    faulty.dedup();
     let solid = Solid::new(mesh, exec)?;
     let mut found = Vec::new();
     let mut boxes = Vec::new();
-    for component in 0..topology.components.len() as u32 {
+    let mut number = vec![None; topology.components.len()];
+    for (component, part) in topology.components.iter().enumerate().filter(|(_, part)| part.is_shell()) {
         exec.check()?;
-        let faces = members.of(component);
-        let vertices = || faces.iter().flat_map(|&face| triangles[face as usize]);
-        if vertices().any(|vertex| faulty.binary_search(&vertex).is_ok()) {
-            continue;
-        }
-        let volume = solid.volume_of(faces);
+        let volume = solid.volume_of(members.of(component as u32));
         if volume != 0.0 {
-            found.push(Shell { component, outward: volume > 0.0, depth: 0 });
-            boxes.push(Aabb::from_points(vertices().map(|vertex| positions[vertex as usize])));
+            let vertices = members.of(component as u32).iter().flat_map(|&face| triangles[face as usize]);
+            boxes.push(Aabb::from_points(vertices.map(|vertex| solid.position(vertex))));
+            number[component] = Some(found.len());
+            found.push(Shell { first_face: part.first_face, outward: volume > 0.0, depth: 0 });
         }
     }
-    let mut order: Vec<usize> = (0..found.len()).collect();
-    order.sort_by(|&a, &b| boxes[a].min.x.total_cmp(&boxes[b].min.x).then(a.cmp(&b)));
-    for inner in 0..found.len() {
-        let own = members.of(found[inner].component);
-        let held = |outer: usize| boxes[outer].contains(boxes[inner].min) && boxes[outer].contains(boxes[inner].max);
-        let around = order.iter().take_while(|&&outer| boxes[outer].min.x <= boxes[inner].min.x);
-        for &outer in around.filter(|&&outer| outer != inner && held(outer)) {
-            exec.check()?;
-            let faces = members.of(found[outer].component);
-            for vertex in own.iter().flat_map(|&face| triangles[face as usize]) {
-                match solid.locate_among(positions[vertex as usize], faces.iter().copied())? {
-                    Location::On(_) => continue,
-                    location => found[inner].depth += u32::from(location.is_inside()),
+    // The shells met by the ray from a point: how often they wind around it, none where it lies on one.
+    let mut met: BTreeMap<usize, Option<i64>> = BTreeMap::new();
+    let around = |point: DVec3, met: &mut BTreeMap<usize, Option<i64>>| {
+        met.clear();
+        solid.each_met(point, |triangle, how| {
+            let Some(shell) = number[topology.face_components[triangle as usize] as usize] else { return };
+            let winding = met.entry(shell).or_insert(Some(0));
+            *winding = match how {
+                Met::On => None,
+                Met::Ahead(turns) => winding.map(|winding| winding + turns),
+            };
+        });
+    };
+    let numbered = number.iter().enumerate().filter_map(|(component, own)| Some((component as u32, (*own)?)));
+    for (component, own) in numbered {
+        exec.check()?;
+        let faces = members.of(component);
+        around(solid.position(triangles[faces[0] as usize][0]), &mut met);
+        // What crosses another is not in it: a shell in another has its box in the other's.
+        let held = |other: usize| {
+            other != own && boxes[other].contains(boxes[own].min) && boxes[other].contains(boxes[own].max)
+        };
+        let holding = met.iter().filter(|&(&other, _)| held(other));
+        let (touching, apart): (Vec<_>, Vec<_>) = holding.partition(|(_, winding)| winding.is_none());
+        let mut depth = apart.iter().filter(|&&(_, winding)| *winding != Some(0)).count();
+        let touching: Vec<usize> = touching.into_iter().map(|(&other, _)| other).collect();
+        for other in touching {
+            for (count, point) in points_of(faces.iter().map(|&face| triangles[face as usize]), &solid).enumerate() {
+                if count.is_multiple_of(64) {
+                    exec.check()?;
+                }
+                around(point, &mut met);
+                match met.get(&other) {
+                    Some(None) => continue,
+                    Some(&Some(winding)) => depth += usize::from(winding != 0),
+                    None => {}
                 }
                 break;
             }
         }
+        found[own].depth = depth as u32;
     }
     Ok(found)
+}
+
+/// Points of triangles: the corners of all, the middles of their sides, and a point inside each.
+fn points_of<'a>(
+    triangles: impl Iterator<Item = [u32; 3]> + Clone + 'a,
+    solid: &'a Solid<'_>,
+) -> impl Iterator<Item = DVec3> + 'a {
+    let placed = triangles.map(|triangle| triangle.map(|vertex| solid.position(vertex)));
+    let sides = placed.clone().flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).filter_map(|[a, b]| exact_middle(a, b));
+    let inner = placed.clone().filter_map(|[a, b, c]| exact_middle(exact_middle(a, b)?, c));
+    placed.flatten().chain(sides).chain(inner)
 }
 
 /// The faces of each component.

@@ -1,15 +1,13 @@
 //! Everything that the judge knows of a mesh, and what it says to a purpose.
 
-use shapeloom_core::glam::{DVec2, DVec3};
-use shapeloom_core::predicates::orient2d;
 use shapeloom_core::{Exec, Findings, Place, Severity};
-use shapeloom_mesh::{Domain, NORMAL, PolyMesh, newell_vector};
+use shapeloom_mesh::{Domain, NORMAL, PolyMesh};
 
 use super::angles::{SMALLEST, slivers};
 use super::shells::shells;
 use super::{Profile, Shell};
 use crate::self_intersection::{
-    FacePair, PairKind, PairList, SelfIntersections, self_intersections, self_intersections_of_polygons,
+    PairKind, PairList, SelfIntersections, self_intersections, self_intersections_of_polygons,
 };
 use crate::triangulated::triangulated;
 use crate::{JudgeError, Measures, MeshRef, PolygonReport, Topology};
@@ -23,9 +21,9 @@ pub struct Verdict {
     pub topology: Topology,
     /// Area, volume and what has none.
     pub measures: Measures,
-    /// Where the mesh meets itself; of each class the first 65,536 pairs are listed.
+    /// Where the mesh meets itself: all pairs are counted, the first of each class listed.
     pub self_intersections: SelfIntersections,
-    /// The closed shells.
+    /// The closed shells, where the purpose asks which way they face.
     pub shells: Vec<Shell>,
 }
 
@@ -37,8 +35,6 @@ struct Details {
     tangled: Vec<u32>,
     /// Whether there are normals.
     normals: bool,
-    /// Pairs that overlap and look the same way, or are folded onto each other.
-    alike: Vec<[u32; 2]>,
 }
 
 /// Why a mesh is no polyhedron, with a witness.
@@ -52,6 +48,8 @@ pub enum NotPolyhedron {
     Vertex(u32),
     /// Faces of different components.
     Apart([u32; 2]),
+    /// Two vertices of faces in one place.
+    Doubled([u32; 2]),
     /// Faces that meet beyond shared sides and corners.
     Meeting([u32; 2]),
 }
@@ -59,8 +57,6 @@ pub enum NotPolyhedron {
 impl Verdict {
     /// How many places of a kind are told.
     const LISTED: usize = Findings::PLACES_KEPT;
-    /// How many pairs of a kind are listed, to be looked at one by one.
-    const PAIRS: usize = 1 << 16;
 
     /// Judges a mesh for a purpose.
     ///
@@ -76,28 +72,35 @@ impl Verdict {
         let measures = Measures::of(mesh, &exec.part(0.2, 0.3))?;
         let crossings = exec.part(0.3, 0.8);
         let self_intersections = match mesh {
-            MeshRef::Triangles(mesh) => self_intersections(mesh, Self::PAIRS, &crossings)?,
-            MeshRef::Polygons(mesh) => self_intersections_of_polygons(mesh, Self::PAIRS, &crossings)?,
+            MeshRef::Triangles(mesh) => self_intersections(mesh, Self::LISTED, &crossings)?,
+            MeshRef::Polygons(mesh) => self_intersections_of_polygons(mesh, Self::LISTED, &crossings)?,
         };
-        let (shells, thin, tangled) = match mesh {
-            MeshRef::Triangles(mesh) => {
-                (shells(mesh, &topology, &exec.part(0.8, 1.0))?, slivers(mesh, exec)?, Vec::new())
-            }
+        let cut;
+        let (triangles, owners, tangled) = match mesh {
+            MeshRef::Triangles(mesh) => (mesh, None, Vec::new()),
             MeshRef::Polygons(mesh) => {
-                let tangled = tangled(mesh, exec)?;
-                let triangles = triangulated(mesh, exec)?;
-                let topology = Topology::of(&triangles, exec)?;
-                (shells(&triangles, &topology, &exec.part(0.8, 1.0))?, slivers(&triangles, exec)?, tangled)
+                cut = triangulated(mesh, &exec.part(0.8, 0.85))?;
+                (&cut.0, Some(&cut.1), tangled(mesh, exec)?)
             }
         };
+        let owner = |triangle: u32| owners.map_or(triangle, |owners| owners[triangle as usize]);
+        let mut thin = match profile.asks_for("W-check-sliver") {
+            true => slivers(triangles, exec)?.into_iter().map(owner).collect(),
+            false => Vec::new(),
+        };
+        thin.dedup();
+        let mut found = Vec::new();
+        if profile.asks_for("W-check-inverted") {
+            let cut = owners.map(|_| Topology::of(triangles, exec)).transpose()?;
+            found = shells(triangles, cut.as_ref().unwrap_or(&topology), &exec.part(0.85, 1.0))?;
+            found.iter_mut().for_each(|shell| shell.first_face = owner(shell.first_face));
+        }
         let normals = [Domain::Vertex, Domain::Wedge].iter().any(|&domain| match mesh {
             MeshRef::Triangles(mesh) => mesh.attribute(domain, NORMAL).is_some(),
             MeshRef::Polygons(mesh) => mesh.attribute(domain, NORMAL).is_some(),
         });
-        let unsound = |pair: &&FacePair| pair.kind == PairKind::Folded || look_alike(mesh, pair.faces);
-        let alike = self_intersections.overlapping.listed.iter().filter(unsound).map(|pair| pair.faces).collect();
-        let mut verdict = Self { findings: Findings::default(), topology, measures, self_intersections, shells };
-        verdict.findings = verdict.against(profile, &Details { thin, tangled, normals, alike });
+        let mut verdict = Self { findings: Findings::default(), topology, measures, self_intersections, shells: found };
+        verdict.findings = verdict.against(profile, &Details { thin, tangled, normals });
         exec.progress(1.0);
         Ok(verdict)
     }
@@ -105,7 +108,7 @@ impl Verdict {
     /// What is against the rules of a purpose.
     fn against(&self, profile: Profile, details: &Details) -> Findings {
         let Self { topology, measures, self_intersections, shells, .. } = self;
-        let Details { thin, tangled, normals, .. } = details;
+        let Details { thin, tangled, normals } = details;
         let mut findings = Findings::default();
         let mut rule = |code, message: &str, count: usize, places: &mut dyn Iterator<Item = Place>| {
             if profile.asks_for(code) {
@@ -140,11 +143,12 @@ impl Verdict {
         let message = "two faces run along their edge in the same direction, so one of them is turned over";
         rule("W-check-orientation", message, turned.len(), &mut turned.iter().map(edge));
         let ring = &t.orientation_witness;
-        let message = "the surface is not orientable: these faces in a ring turn the first one over";
-        rule("W-check-orientable", message, usize::from(!ring.is_empty()), &mut ring.iter().map(face));
+        let message = format!("the surface is one-sided: a ring of {} faces turns the first one over", ring.len());
+        rule("W-check-orientable", &message, ring.len(), &mut ring.iter().map(face));
         let inverted: Vec<&Shell> = shells.iter().filter(|shell| shell.is_inverted()).collect();
-        let mut places = inverted.iter().map(|shell| Place::element("component", shell.component.into()));
-        let message = "a closed shell faces the wrong way: an outer one inward, or one within another outward";
+        let mut places = inverted.iter().map(|shell| face(&shell.first_face));
+        let message =
+            "the closed shell with this face looks the wrong way: an outer one inward, or one within another outward";
         rule("W-check-inverted", message, inverted.len(), &mut places);
         let no_volume = t.is_closed() && t.is_oriented() && measures.volume.is_some_and(|volume| volume <= 0.0);
         rule("W-check-volume", "the volume enclosed is not above 0", usize::from(no_volume), &mut whole());
@@ -153,36 +157,45 @@ impl Verdict {
         degenerate.dedup();
         let message = "a face has no area or names a vertex twice";
         rule("W-check-degenerate", message, degenerate.len(), &mut degenerate.iter().map(face));
-        let again = &t.duplicate_faces;
-        rule("W-check-duplicate", "a face repeats another", again.len(), &mut again.iter().map(pair));
+        let pairs = self_intersections;
+        let mut again = t.duplicate_faces.clone();
+        let equal = pairs.touching.listed.iter().filter(|pair| pair.kind == PairKind::Duplicate);
+        again.extend(equal.map(|pair| pair.faces));
+        again.sort_unstable();
+        again.dedup();
+        let message = "a face has the corners of another and looks the same way, or has its vertices";
+        let count = (again.len() as u64).max(pairs.count(PairKind::Duplicate)) as usize;
+        rule("W-check-duplicate", message, count, &mut again.iter().map(pair));
         rule("W-check-polygon", "a polygon meets itself", tangled.len(), &mut tangled.iter().map(face));
-        let first = |list: &PairList| list.listed.iter().take(Self::LISTED).map(|pair| pair.faces).collect::<Vec<_>>();
-        let SelfIntersections { crossing, overlapping, touching, .. } = self_intersections;
-        let message = "a face passes through another";
-        rule("W-check-crossing", message, crossing.total as usize, &mut first(crossing).iter().map(pair));
-        let message = match overlapping.total > overlapping.listed.len() as u64 {
-            true => "two faces overlap in a plane, at least so often",
-            false => "two faces overlap in a plane",
-        };
-        rule("W-check-overlap", message, details.alike.len(), &mut details.alike.iter().map(pair));
-        // Faces that lie on each other and look at each other are in contact.
-        let facing = overlapping.total as usize - details.alike.len();
-        let contacts = touching.total as usize + facing;
-        let message = "two faces touch beside shared sides and corners";
-        let mut places: Vec<[u32; 2]> = first(touching);
-        places.extend(first(overlapping).into_iter().filter(|pair| !details.alike.contains(pair)).take(Self::LISTED));
-        rule("W-check-contact", message, contacts, &mut places.iter().map(pair));
+        let listed = |list: &PairList| list.listed.iter().map(|pair| pair.faces).collect::<Vec<_>>();
+        for (code, message, list) in [
+            ("W-check-crossing", "a face passes through another", &pairs.crossing),
+            ("W-check-overlap", "two faces overlap in a plane", &pairs.overlapping),
+        ] {
+            rule(code, message, list.total as usize, &mut listed(list).iter().map(pair));
+        }
+        let doubled = self.doubled_vertices();
+        let count = pairs.touching.total as usize + doubled.len();
+        let vertices = doubled.iter().map(|&[a, b]| Place::pair("vertices", a, b));
+        let message = "two faces touch beside shared sides and corners, or two vertices lie in one place";
+        rule("W-check-contact", message, count, &mut listed(&pairs.touching).iter().map(pair).chain(vertices));
         let lonely = &t.isolated_vertices;
         rule("W-check-isolated", "a vertex has no face", lonely.len(), &mut lonely.iter().map(vertex));
-        let message = format!("a triangle has an angle below {SMALLEST} degree");
-        let mut places = thin.iter().map(|&triangle| Place::element("triangle", triangle.into()));
-        rule("W-check-sliver", &message, thin.len(), &mut places);
+        let message = format!("a face has an angle below {SMALLEST} degree, once it is cut into triangles");
+        rule("W-check-sliver", &message, thin.len(), &mut thin.iter().map(face));
         rule("W-check-normals", "there are no normals to shade with", usize::from(!normals), &mut whole());
         findings
     }
 
+    /// Vertices of faces at the place of an earlier one.
+    fn doubled_vertices(&self) -> Vec<[u32; 2]> {
+        let named = |vertex: &u32| self.topology.isolated_vertices.binary_search(vertex).is_err();
+        let doubled = self.measures.coincident_vertices.iter().filter(|pair| pair.iter().all(named));
+        doubled.copied().collect()
+    }
+
     /// Whether the mesh is the surface of one polyhedron: every edge has two faces, the faces at every vertex are one fan,
-    /// all faces are joined, and none meet beyond shared sides and corners. Such a surface is orientable.
+    /// all faces are joined, no two vertices lie in one place, and no faces meet beyond shared sides and corners. Such a surface is orientable.
     ///
     /// # Errors
     /// The first of these that is not so, with a witness.
@@ -200,27 +213,14 @@ impl Verdict {
         if let [first, second, ..] = topology.components[..] {
             return Err(NotPolyhedron::Apart([first.first_face, second.first_face]));
         }
+        // What meets in a place but not in a vertex is pinched there.
+        if let Some(&vertices) = self.doubled_vertices().first() {
+            return Err(NotPolyhedron::Doubled(vertices));
+        }
         let SelfIntersections { crossing, overlapping, touching, .. } = &self.self_intersections;
         let listed = [crossing, overlapping, touching].into_iter().find_map(|list| list.listed.first());
         listed.map_or(Ok(()), |pair| Err(NotPolyhedron::Meeting(pair.faces)))
     }
-}
-
-/// Whether two faces in one plane look the same way. Exact for triangles; for polygons by their Newell vectors.
-fn look_alike(mesh: MeshRef<'_>, faces: [u32; 2]) -> bool {
-    let normals = match mesh {
-        MeshRef::Triangles(mesh) => {
-            let [a, b] = faces.map(|face| mesh.corners(face as usize));
-            let turn = |corners: [DVec3; 3], [i, j]: [usize; 2]| {
-                let [a, b, c] = corners.map(|p| DVec2::new(p[i], p[j]));
-                orient2d(a, b, c)
-            };
-            let planes = [[0, 1], [1, 2], [2, 0]].into_iter();
-            return planes.map(|plane| [turn(a, plane), turn(b, plane)]).all(|[one, other]| one == other);
-        }
-        MeshRef::Polygons(mesh) => faces.map(|face| newell_vector(mesh.outline(face as usize)).normalize_or_zero()),
-    };
-    normals[0].dot(normals[1]) > 0.0
 }
 
 /// The polygons with more than three corners that are not simple, rising.

@@ -14,9 +14,13 @@ pub enum PairKind {
     CrossingAtCorner,
     /// They lie in one plane on the same side of a side that they share, and so overlap in an area.
     Folded,
-    /// They lie in one plane and overlap in an area, with other corners or turned.
+    /// They lie in one plane, look the same way and overlap in an area, with other corners.
     Overlap,
-    /// They have the same corners, in either orientation.
+    /// They lie in one plane, look opposite ways and have an area in common, with other corners: solids in contact.
+    Contact,
+    /// They have the same corners and look the same way, or have no area.
+    Duplicate,
+    /// They have the same corners and look opposite ways.
     Coincident,
     /// They meet along a segment that is not a shared side, and neither passes through the other.
     TouchAlongSegment,
@@ -26,11 +30,13 @@ pub enum PairKind {
 
 impl PairKind {
     /// Every kind, the strongest first.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Crossing,
         Self::CrossingAtCorner,
         Self::Folded,
         Self::Overlap,
+        Self::Contact,
+        Self::Duplicate,
         Self::Coincident,
         Self::TouchAlongSegment,
         Self::TouchAtPoint,
@@ -43,6 +49,8 @@ impl PairKind {
             Self::CrossingAtCorner => "crossing at a shared corner",
             Self::Folded => "folded onto each other",
             Self::Overlap => "overlapping in a plane",
+            Self::Contact => "in contact in a plane",
+            Self::Duplicate => "duplicate",
             Self::Coincident => "coincident",
             Self::TouchAlongSegment => "touching along a segment",
             Self::TouchAtPoint => "touching at a point",
@@ -54,12 +62,12 @@ impl PairKind {
         matches!(self, Self::Crossing | Self::CrossingAtCorner)
     }
 
-    /// Whether they lie in one plane and have an area in common, without having the same corners.
+    /// Whether they overlap in an area, looking the same way with other corners or folded along a side.
     pub fn overlaps(self) -> bool {
         matches!(self, Self::Folded | Self::Overlap)
     }
 
-    /// Whether they only touch: neither crossing nor overlapping. Coincident faces touch.
+    /// Whether they only touch: neither crossing nor overlapping. Coincident and duplicate faces touch.
     pub fn touches(self) -> bool {
         !self.crosses() && !self.overlaps()
     }

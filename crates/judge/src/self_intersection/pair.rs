@@ -34,8 +34,15 @@ pub(super) fn meeting(points: Points, first: &Triangle, second: &Triangle) -> Op
         }
         // The places of all three corners sum to 3, so the one left over is known.
         2 => with_side(points, axis, [first, second], [3 - places[0], 3 - places[1]]),
-        _ => Some(PairKind::Coincident),
+        // Equal triangles are grouped before; these are said to be what they are all the same.
+        _ => Some(if turned_over(a, b) { PairKind::Coincident } else { PairKind::Duplicate }),
     }
+}
+
+/// Whether two triangles with the same corners look opposite ways.
+pub(super) fn turned_over(a: [u32; 3], b: [u32; 3]) -> bool {
+    let shift = b.iter().position(|&corner| corner == a[0]).unwrap_or(0);
+    b[(shift + 1) % 3] != a[1]
 }
 
 fn without_corner(points: Points, axis: Axis, first: &Triangle, second: &Triangle) -> Option<PairKind> {
@@ -91,7 +98,10 @@ fn with_side(points: Points, axis: Axis, [first, second]: [&Triangle; 2], others
 fn in_one_plane(points: Points, axis: Axis, a: [u32; 3], b: [u32; 3], corner_shared: bool) -> Option<PairKind> {
     match common(points, axis, &a, &b) {
         Common::Nothing => None,
-        Common::Inside => Some(PairKind::Overlap),
+        Common::Inside => {
+            let [one, other] = [a, b].map(|[p, q, r]| points.turn(axis, p, q, r));
+            Some(if one == other { PairKind::Overlap } else { PairKind::Contact })
+        }
         Common::Along(from, to) if from != to => Some(PairKind::TouchAlongSegment),
         Common::Along(..) => (!corner_shared).then_some(PairKind::TouchAtPoint),
     }

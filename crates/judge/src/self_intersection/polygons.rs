@@ -1,5 +1,6 @@
 //! Where a polygon mesh meets itself.
 
+use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Convert, ConvertError, Exec, OverBudget, Reservation, Stop};
 use shapeloom_mesh::{Column, Domain, PolyMesh, TriangulatePolygons, Values};
 use shapeloom_spatial::BvhError;
@@ -7,8 +8,11 @@ use shapeloom_spatial::BvhError;
 use super::equal_faces::Groups;
 use super::search::each_meeting;
 use super::tally::{Tally, add_equal_faces};
+use super::triangle::Points;
 use super::{PairKind, SelfIntersections};
+use crate::cycle::same_rotation;
 use crate::equal_positions::equal_positions;
+use crate::segments::collinear;
 use crate::{JudgeError, Scaled};
 
 /// Finds every two polygons of a mesh that meet in more than the corners and the sides that they share.
@@ -43,17 +47,28 @@ pub fn self_intersections_of_polygons(
     let (corners, owners) = triangles(mesh, &groups, &first, exec)?;
 
     let mut tally = Tally::new(limit, exec);
-    add_equal_faces(&mut tally, &groups, exec)?;
+    let turned = |first: u32, face: u32| {
+        !same_rotation(ring(first), ring(face))
+            && has_area(ring(first).iter().map(|&corner| positions[corner as usize]))
+    };
+    add_equal_faces(&mut tally, &groups, turned, exec)?;
     let mut found = Found::new(exec);
     each_meeting(
-        &positions,
-        &corners,
+        (&positions, &corners),
         256,
         exec,
+        |a, b| owners[a as usize] != owners[b as usize],
         || Found::new(exec),
         |found, triangles, kind| {
             let [a, b] = triangles.map(|triangle| owners[triangle as usize]);
-            if a == b { Ok(()) } else { Ok(found.push(([a.min(b), a.max(b)], kind))?) }
+            // Different polygons that share a triangle overlap, or are in contact.
+            let area = || Points(&positions).triangle(corners[triangles[0] as usize]).seen_along.is_some();
+            let kind = match kind {
+                PairKind::Duplicate if area() => PairKind::Overlap,
+                PairKind::Coincident => PairKind::Contact,
+                other => other,
+            };
+            Ok(found.push(([a.min(b), a.max(b)], kind))?)
         },
         |part| Ok(part.pairs.into_iter().try_for_each(|pair| found.push(pair))?),
     )?;
@@ -64,9 +79,16 @@ pub fn self_intersections_of_polygons(
             exec.check()?;
         }
         let ([a, b], kind) = pair;
-        tally.add([groups.get(a), groups.get(b)], kind)?;
+        tally.add_turned([groups.get(a), groups.get(b)], kind, turned)?;
     }
     Ok(tally.finish())
+}
+
+/// Whether not all corners lie on one line.
+fn has_area(mut corners: impl Iterator<Item = DVec3>) -> bool {
+    let Some(first) = corners.next() else { return false };
+    let Some(other) = corners.find(|&corner| corner != first) else { return false };
+    corners.any(|corner| !collinear(first, other, corner))
 }
 
 /// The triangles of one polygon of each group, with the group of each.

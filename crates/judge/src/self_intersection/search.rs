@@ -8,6 +8,7 @@ use shapeloom_spatial::BoxPairs;
 
 use super::equal_faces::Groups;
 use super::pair::meeting;
+use super::pair::turned_over;
 use super::tally::{Tally, add_equal_faces};
 use super::triangle::{Points, Triangle};
 use super::{FacePair, PairKind, SelfIntersections};
@@ -43,17 +44,22 @@ pub fn self_intersections(mesh: &TriMesh, limit: usize, exec: &Exec) -> Result<S
         mesh.triangles().iter().map(|triangle| triangle.map(|vertex| first[vertex as usize])).collect();
     let groups = Groups::of_triangles(&corners, positions.len());
     exec.check()?;
-    let corners: Vec<[u32; 3]> = (0..groups.len() as u32).map(|group| corners[groups.get(group)[0] as usize]).collect();
+    let all = corners;
+    let turned = |first: u32, face: u32| {
+        let [first, face] = [first, face].map(|face| all[face as usize]);
+        turned_over(first, face) && Points(&positions).triangle(first).seen_along.is_some()
+    };
+    let corners: Vec<[u32; 3]> = (0..groups.len() as u32).map(|group| all[groups.get(group)[0] as usize]).collect();
 
     let mut tally = Tally::new(limit, exec);
-    add_equal_faces(&mut tally, &groups, exec)?;
+    add_equal_faces(&mut tally, &groups, turned, exec)?;
     each_meeting(
-        &positions,
-        &corners,
+        (&positions, &corners),
         parts(limit),
         exec,
+        |_, _| true,
         || Tally::new(limit, exec),
-        |tally, [a, b], kind| Ok(tally.add([groups.get(a), groups.get(b)], kind)?),
+        |tally, [a, b], kind| Ok(tally.add_turned([groups.get(a), groups.get(b)], kind, turned)?),
         |part| Ok(tally.merge(part)?),
     )?;
     Ok(tally.finish())
@@ -65,12 +71,12 @@ fn parts(limit: usize) -> usize {
     ((64 << 20) / bytes).clamp(16, 512)
 }
 
-/// Calls `visit` for every two triangles that meet. The corners have equal numbers where their positions are equal.
+/// Calls `visit` for every two triangles that are `wanted` and meet. The corners have equal numbers where their positions are equal.
 pub(super) fn each_meeting<T: Send>(
-    positions: &[DVec3],
-    corners: &[[u32; 3]],
+    (positions, corners): (&[DVec3], &[[u32; 3]]),
     parts: usize,
     exec: &Exec,
+    wanted: impl Fn(u32, u32) -> bool + Sync,
     start: impl Fn() -> T + Sync,
     visit: impl Fn(&mut T, [u32; 2], PairKind) -> Result<(), JudgeError> + Sync,
     merge: impl FnMut(T) -> Result<(), JudgeError>,
@@ -83,9 +89,14 @@ pub(super) fn each_meeting<T: Send>(
         Ok::<_, Stop>(())
     })?;
     let boxes = BoxPairs::build(corners.len() as u32, |i| points.bounds(corners[i as usize]), exec)?;
-    let decide = |state: &mut T, a: u32, b: u32| match meeting(points, &triangles[a as usize], &triangles[b as usize]) {
-        Some(kind) => visit(state, [a, b], kind),
-        None => Ok(()),
+    let decide = |state: &mut T, a: u32, b: u32| {
+        if !wanted(a, b) {
+            return Ok(());
+        }
+        match meeting(points, &triangles[a as usize], &triangles[b as usize]) {
+            Some(kind) => visit(state, [a, b], kind),
+            None => Ok(()),
+        }
     };
     boxes.visit(exec, parts, start, decide, merge)
 }

@@ -19,9 +19,10 @@ pub struct PairList {
 pub struct SelfIntersections {
     /// Pairs of which one passes through the other: [`PairKind::Crossing`] and [`PairKind::CrossingAtCorner`].
     pub crossing: PairList,
-    /// Pairs in one plane with an area in common: [`PairKind::Folded`] and [`PairKind::Overlap`].
+    /// Pairs in one plane that overlap in an area: [`PairKind::Folded`] and [`PairKind::Overlap`].
     pub overlapping: PairList,
-    /// Pairs that only touch: [`PairKind::Coincident`], [`PairKind::TouchAlongSegment`] and [`PairKind::TouchAtPoint`].
+    /// Pairs that only touch: [`PairKind::Contact`], [`PairKind::Duplicate`], [`PairKind::Coincident`],
+    /// [`PairKind::TouchAlongSegment`] and [`PairKind::TouchAtPoint`].
     pub touching: PairList,
     counts: [u64; PairKind::ALL.len()],
 }
@@ -60,6 +61,30 @@ impl<'a> Tally<'a> {
         Self { counts: Default::default(), lists: [list(), list(), list()] }
     }
 
+    /// Adds every pair of a face of one group and a face of another, which meet as the first face of each does but that
+    /// some look the other way: overlap and contact change places for them.
+    pub fn add_turned(
+        &mut self,
+        groups: [&[u32]; 2],
+        kind: PairKind,
+        turned: impl Fn(u32, u32) -> bool,
+    ) -> Result<(), OverBudget> {
+        let other = match kind {
+            PairKind::Overlap => PairKind::Contact,
+            PairKind::Contact => PairKind::Overlap,
+            _ => return self.add(groups, kind),
+        };
+        if groups.iter().all(|group| group.len() == 1) {
+            return self.add(groups, kind);
+        }
+        let parts = groups.map(|group| group.iter().partition::<Vec<u32>, _>(|&&face| !turned(group[0], face)));
+        let [(a, a_turned), (b, b_turned)] = &parts;
+        for (one, two, kind) in [(a, b, kind), (a_turned, b_turned, kind), (a, b_turned, other), (a_turned, b, other)] {
+            self.add([one, two], kind)?;
+        }
+        Ok(())
+    }
+
     /// Adds every pair of a face of one group and a face of another.
     pub fn add(&mut self, groups: [&[u32]; 2], kind: PairKind) -> Result<(), OverBudget> {
         let count = groups.iter().fold(1, |count: u64, group| count.saturating_mul(group.len() as u64));
@@ -74,13 +99,17 @@ impl<'a> Tally<'a> {
         Ok(())
     }
 
-    /// Adds the pairs inside a group of faces with equal corners.
-    pub fn add_coincident(&mut self, group: &[u32]) -> Result<(), OverBudget> {
-        let kind = PairKind::Coincident;
-        let count = group.len() as u64;
-        self.count(kind, count * count.saturating_sub(1) / 2);
-        let pairs = group.iter().enumerate().flat_map(|(i, &a)| group[i + 1..].iter().map(move |&b| [a, b]));
-        pairs.take(self.lists[class(kind)].limit).try_for_each(|faces| self.list(FacePair { faces, kind }))
+    /// Adds the pairs inside a group of faces with equal corners, of which some look the other way.
+    pub fn add_coincident(&mut self, group: &[u32], turned: impl Fn(u32, u32) -> bool) -> Result<(), OverBudget> {
+        let (same, opposite) = group.iter().partition::<Vec<u32>, _>(|&&face| !turned(group[0], face));
+        for part in [&same, &opposite] {
+            let count = part.len() as u64;
+            let kind = PairKind::Duplicate;
+            self.count(kind, count * count.saturating_sub(1) / 2);
+            let pairs = part.iter().enumerate().flat_map(|(i, &a)| part[i + 1..].iter().map(move |&b| [a, b]));
+            pairs.take(self.lists[class(kind)].limit).try_for_each(|faces| self.list(FacePair { faces, kind }))?;
+        }
+        self.add([&same, &opposite], PairKind::Coincident)
     }
 
     /// Adds what another has counted and listed.
@@ -171,13 +200,18 @@ impl Smallest<'_> {
 }
 
 /// Every pair inside the groups of equal faces.
-pub(super) fn add_equal_faces(tally: &mut Tally, groups: &Groups, exec: &Exec) -> Result<(), crate::JudgeError> {
+pub(super) fn add_equal_faces(
+    tally: &mut Tally,
+    groups: &Groups,
+    turned: impl Fn(u32, u32) -> bool,
+    exec: &Exec,
+) -> Result<(), crate::JudgeError> {
     for group in 0..groups.len() as u32 {
         if group % 4096 == 0 {
             exec.check()?;
         }
         if groups.get(group).len() > 1 {
-            tally.add_coincident(groups.get(group))?;
+            tally.add_coincident(groups.get(group), &turned)?;
         }
     }
     Ok(())
@@ -220,7 +254,7 @@ mod tests {
         for limit in 0..25 {
             let mut tally = Tally::new(limit, &exec);
             tally.add([&first, &second], PairKind::Crossing).unwrap();
-            tally.add_coincident(&first).unwrap();
+            tally.add_coincident(&first, |_, _| false).unwrap();
             let found = tally.finish();
             assert_eq!((found.crossing.total, found.touching.total), (20, 6));
             let listed: Vec<[u32; 2]> = found.crossing.listed.iter().map(|pair| pair.faces).collect();

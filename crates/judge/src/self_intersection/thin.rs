@@ -37,7 +37,7 @@ pub(super) fn meeting(points: Points, first: &Triangle, second: &Triangle) -> Op
     shared.dedup();
     let within = |triangle: &Triangle| triangle.corners.iter().all(|corner| shared.contains(corner));
     if within(first) && within(second) {
-        return Some(PairKind::Coincident);
+        return Some(PairKind::Duplicate);
     }
     let hulls = [first, second].map(|triangle| Hull::of(points, triangle));
     let (common, through) = match hulls.map(|hull| hull.len) {

@@ -12,8 +12,14 @@ pub struct Component {
     pub first_face: u32,
     /// How many faces it has.
     pub faces: u32,
-    /// Its boundary loops.
+    /// Its boundary loops; one that joins two components at a vertex is one of both.
     pub boundary_loops: u32,
+    /// Its edges with one face.
+    pub boundary_edges: u32,
+    /// Its edges with more than two faces.
+    pub non_manifold_edges: u32,
+    /// Its edges with two faces that run along it in the same direction.
+    pub inconsistent_edges: u32,
     /// Whether its faces can be oriented alike.
     pub orientable: bool,
     /// Vertices less edges plus faces.
@@ -21,6 +27,13 @@ pub struct Component {
     /// The number of its handles, or where it is not orientable of its crosscaps. None where the mesh is not manifold, or
     /// where a face meets itself so that the number would not be whole.
     pub genus: Option<u64>,
+}
+
+impl Component {
+    /// Whether every edge has two faces that run along it in opposite directions.
+    pub fn is_shell(&self) -> bool {
+        self.boundary_edges == 0 && self.non_manifold_edges == 0 && self.inconsistent_edges == 0
+    }
 }
 
 /// The components by their smallest face, and the component of each face. Genus is told where the mesh is manifold.
@@ -47,6 +60,9 @@ pub(super) fn components(
                 first_face: face,
                 faces: 0,
                 boundary_loops: 0,
+                boundary_edges: 0,
+                non_manifold_edges: 0,
+                inconsistent_edges: 0,
                 orientable: true,
                 euler_characteristic: 0,
                 genus: None,
@@ -60,8 +76,28 @@ pub(super) fn components(
     for &face in twisted {
         found[number[face as usize] as usize].orientable = false;
     }
+    let mut at_loop = vec![u32::MAX; if boundary.is_empty() { 0 } else { faces.vertex_count() }];
+    for (index, edges) in boundary.iter().enumerate() {
+        edges.iter().flatten().for_each(|&vertex| at_loop[vertex as usize] = index as u32);
+    }
+    let mut loops = Vec::new();
     for uses in edges.iter() {
-        found[number[faces.face_of(uses[0]) as usize] as usize].euler_characteristic -= 1;
+        let index = number[faces.face_of(uses[0]) as usize];
+        let component = &mut found[index as usize];
+        component.euler_characteristic -= 1;
+        match *uses {
+            [one] => {
+                component.boundary_edges += 1;
+                loops.push((index, at_loop[faces.side(one)[0] as usize]));
+            }
+            [one, other] => component.inconsistent_edges += u32::from(faces.side(one) == faces.side(other)),
+            _ => component.non_manifold_edges += 1,
+        }
+    }
+    loops.sort_unstable();
+    loops.dedup();
+    for (component, _) in loops {
+        found[component as usize].boundary_loops += 1;
     }
     // A vertex counts once for each component that names it.
     let mut last = vec![u32::MAX; faces.vertex_count()];
@@ -82,10 +118,6 @@ pub(super) fn components(
     counted_twice.dedup();
     for (_, component) in counted_twice {
         found[component as usize].euler_characteristic += 1;
-    }
-    // A loop's vertices belong to the component of any face there.
-    for edges in boundary.iter() {
-        found[last[edges[0][0] as usize] as usize].boundary_loops += 1;
     }
     if manifold {
         for component in &mut found {

@@ -1,15 +1,20 @@
 //! The fans of faces around vertices.
 
+use shapeloom_core::{Exec, Stop};
+
 use super::edges::Edges;
 use crate::Faces;
 use crate::union_find::DisjointSets;
 
 /// How many fans each vertex has: corners of faces that are joined through edges at the vertex make one. 0 for a vertex
 /// that no face names.
-pub(super) fn fan_counts(faces: &Faces<'_>, edges: &Edges) -> Vec<u32> {
+pub(super) fn fan_counts(faces: &Faces<'_>, edges: &Edges, exec: &Exec) -> Result<Vec<u32>, Stop> {
     let corners = faces.corners();
     let mut fans = DisjointSets::new(corners.len());
-    for uses in edges.iter() {
+    for (edge, uses) in edges.iter().enumerate() {
+        if edge.is_multiple_of(1 << 16) {
+            exec.check()?;
+        }
         let [a, b] = corners_at(faces, uses[0]);
         for &wedge in &uses[1..] {
             let [start, end] = corners_at(faces, wedge);
@@ -31,7 +36,7 @@ pub(super) fn fan_counts(faces: &Faces<'_>, edges: &Edges) -> Vec<u32> {
     for (wedge, &vertex) in corners.iter().enumerate() {
         counts[vertex as usize] += u32::from(fans.is_first(wedge as u32));
     }
-    counts
+    Ok(counts)
 }
 
 /// The wedges at both ends of the side that begins at a wedge.

@@ -58,7 +58,7 @@ pub struct Topology {
     pub components: Vec<Component>,
     /// The component of each face.
     pub face_components: Vec<u32>,
-    _memory: Reservation,
+    _memory: [Reservation; 2],
 }
 
 impl Topology {
@@ -79,7 +79,7 @@ impl Topology {
         // What is kept: at worst each side is a boundary edge and each face a component.
         let kept = exec.reserve_elements(corners + faces.vertex_count() as u64, 12)?;
         let per_component = size_of::<Component>() as u64 * faces.len() as u64;
-        let mut memory = vec![kept, exec.reserve(per_component)?];
+        let components_kept = exec.reserve(per_component)?;
         // Sets of corners and of faces, keys of faces.
         let _scratch = exec.reserve_elements(corners + faces.vertex_count() as u64, 16)?;
         let part = |from: f64, to: f64| exec.part(from, to);
@@ -88,10 +88,10 @@ impl Topology {
             EdgesError::Stop(stop) => JudgeError::Stop(stop),
         })?;
         exec.progress(0.5);
-        let fans = fan_counts(faces, &edges);
+        let fans = fan_counts(faces, &edges, exec)?;
         exec.check()?;
         exec.progress(0.65);
-        let orientation = Orientation::new(faces, &edges);
+        let orientation = Orientation::new(faces, &edges, exec)?;
         exec.check()?;
         exec.progress(0.75);
         let of_count = |wanted: fn(u32) -> bool| -> Vec<u32> {
@@ -128,7 +128,6 @@ impl Topology {
             }
         }
         exec.progress(1.0);
-        let memory = memory.swap_remove(0);
         Ok(Self {
             vertices: faces.vertex_count(),
             faces: faces.len(),
@@ -143,7 +142,7 @@ impl Topology {
             duplicate_faces,
             components,
             face_components,
-            _memory: memory,
+            _memory: [kept, components_kept],
         })
     }
 

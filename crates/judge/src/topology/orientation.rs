@@ -1,5 +1,7 @@
 //! Whether faces can be, and are, oriented alike across the edges that two of them share.
 
+use shapeloom_core::{Exec, Stop};
+
 use super::edges::Edges;
 use crate::Faces;
 use crate::union_find::TwoColoring;
@@ -17,10 +19,13 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    pub fn new(faces: &Faces<'_>, edges: &Edges) -> Self {
+    pub fn new(faces: &Faces<'_>, edges: &Edges, exec: &Exec) -> Result<Self, Stop> {
         let mut found = Self::default();
         let mut coloring = TwoColoring::new(faces.len());
-        for uses in edges.iter() {
+        for (edge, uses) in edges.iter().enumerate() {
+            if edge.is_multiple_of(1 << 16) {
+                exec.check()?;
+            }
             let &[one, other] = uses else { continue };
             let same_way = faces.side(one) == faces.side(other);
             if same_way {
@@ -34,7 +39,7 @@ impl Orientation {
         if let Some(&start) = found.twisted.first() {
             found.witness = twisted_ring(faces, edges, start);
         }
-        found
+        Ok(found)
     }
 }
 

@@ -38,9 +38,9 @@ const TOLERANCES: [f64; 3] = [0.2, 0.02, 0.002];
 impl SignedDistance {
     /// Whether a point is inside, by its winding number. False where the point is not finite.
     ///
-    /// On a closed mesh the winding number is a whole number, so a proven bound below 1/2 is enough. Else it is refined
-    /// until the bound keeps clear of the threshold, at last exactly; on the threshold itself, where rounding alone
-    /// decides, the value is taken as it is.
+    /// On a closed mesh the winding number is a whole number off the surface, so a proven bound below 1/2 is enough. Else
+    /// it is refined until the bound keeps clear of the threshold, at last exactly; where rounding alone decides, on the
+    /// threshold itself or closer to an edge than about 1e-13 of its length, the value is taken as it is.
     pub fn is_inside(&self, query: DVec3) -> bool {
         if self.closed {
             let found = self.winding.winding_number_within(query, 0.45);

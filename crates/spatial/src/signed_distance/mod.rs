@@ -34,10 +34,11 @@ pub struct SignedClosest {
 ///
 /// Inside is what the generalised winding number says, so meshes with holes, flipped or duplicate faces and soups have
 /// an inside too; [`InsideRule`] says which winding numbers are inside. Where the mesh is closed (see
-/// [`SignedDistance::is_closed`]) the sign is right: a winding number with a proven bound decides it, and exact
-/// predicates the side of the nearest triangles. Only within about 1e-13 of the shape's size from an edge can rounding
-/// leave it open. Where the mesh is not closed, the winding number passes 1/2 also away from the surface, and the sign
-/// jumps there.
+/// [`SignedDistance::is_closed`]) the sign is right wherever the winding number, a whole number there, has a proven bound
+/// below 1/2; exact predicates decide the side of the nearest triangles. The bound is larger only nearer to an edge than
+/// about 1e-13 of its length, or where very many edges or needles come as near; there rounding may leave the sign open.
+/// Coordinates below 1e-307 of the shape's size count as rounded (see [`WindingNumber`](crate::WindingNumber)'s bound).
+/// Where the mesh is not closed, the winding number passes 1/2 also away from the surface, and the sign jumps there.
 ///
 /// It is a [`Field`](shapeloom_core::Field): on a closed mesh a true distance with Lipschitz constant 1.
 ///
@@ -128,7 +129,8 @@ impl SignedDistance {
         self.beside(query, &[])
     }
 
-    /// [`SignedDistance::distance`] of many points, in parallel, with the same bits.
+    /// [`SignedDistance::distance`] of many points, in parallel, with the same bits. As in
+    /// [`WindingTree::winding_numbers`], up to four million are sorted without asking whether to stop.
     ///
     /// # Errors
     /// Too little memory in the budget, or the reason to stop.

@@ -178,6 +178,9 @@ fn gradients_are_difference_quotients() {
     assert_eq!(distance.gradient(DVec3::new(0.25, 0.5, 0.0)), DVec3::NEG_Z);
     assert_eq!(distance.gradient(DVec3::new(1.0, 0.25, 0.5)), DVec3::X);
     assert_eq!(distance.gradient(DVec3::new(1.0, 1.0, 0.5)), DVec3::ZERO);
+    let inward = cube().1.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let inward = build(&(cube().0, inward)).with_rule(InsideRule::NonZero);
+    assert_eq!(inward.gradient(DVec3::new(1.0, 0.25, 0.5)), DVec3::X);
     let sheet = build(&(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]));
     // Just under half of all directions: outside on both sides.
     assert_eq!(sheet.gradient(DVec3::new(0.25, 0.25, 0.0)), DVec3::ZERO);

@@ -12,7 +12,8 @@ const SECTION: usize = 1 << 22;
 
 impl WindingTree {
     /// [`WindingTree::winding_number`] of many points, in parallel, with the same bits. Queries are answered in an
-    /// order of their own, along a Morton curve; `out` has the given one.
+    /// order of their own, along a Morton curve; `out` has the given one. Between asking whether to stop up to four
+    /// million queries are sorted, which takes 130 ms; all other steps are short.
     ///
     /// # Errors
     /// Too little memory in the budget (16 bytes a query, at most 64 MiB), or the reason to stop.

@@ -35,7 +35,7 @@ fn exact(triangles: &[[DVec3; 3]], query: DVec3) -> f64 {
 
 /// The cluster of all, made of the clusters of pairs, of fours and so on: what the tree does.
 fn merged(triangles: &[[DVec3; 3]]) -> Cluster {
-    let mut parts: Vec<Cluster> = triangles.chunks(2).map(Cluster::of_triangles).collect();
+    let mut parts: Vec<Cluster> = triangles.chunks(2).map(|pair| Cluster::of_triangles(pair, DVec3::ZERO)).collect();
     while parts.len() > 1 {
         parts = parts.chunks(2).map(Cluster::of_clusters).collect();
     }
@@ -47,7 +47,7 @@ fn moments_and_radii_of_merged_clusters_are_those_of_their_triangles() {
     let mut draws = Draws::new(4);
     for kind in 0..5 {
         let triangles = clusters(&mut draws, kind);
-        let (direct, merged) = (Cluster::of_triangles(&triangles), merged(&triangles));
+        let (direct, merged) = (Cluster::of_triangles(&triangles, DVec3::ZERO), merged(&triangles));
         assert!((direct.center - merged.center).length() < 1e-6);
         for (a, b) in [
             (direct.quadrupole().to_vec(), merged.quadrupole().to_vec()),
@@ -71,7 +71,7 @@ fn no_cluster_is_wrong_by_more_than_its_bound() {
     for kind in 0..5 {
         for _ in 0..8 {
             let triangles = clusters(&mut draws, kind);
-            for cluster in [Cluster::of_triangles(&triangles), merged(&triangles)] {
+            for cluster in [Cluster::of_triangles(&triangles, DVec3::ZERO), merged(&triangles)] {
                 let node = Node::of(&[cluster]);
                 for i in 0..100 {
                     let distance = cluster.radius * (1.4 + 0.01 * f64::from(i * i));
@@ -90,6 +90,24 @@ fn no_cluster_is_wrong_by_more_than_its_bound() {
     assert!(tightest > 0.1, "the bound is never within a factor of ten: {tightest}");
 }
 
+/// A thousand radii away truncation is nothing: what is left is the single precision of the moments.
+#[test]
+fn rounding_is_held_where_truncation_is_nothing() {
+    let mut draws = Draws::new(12);
+    let mut beyond_truncation = 0;
+    for _ in 0..200 {
+        let triangles = clusters(&mut draws, 0);
+        let cluster = Cluster::of_triangles(&triangles, DVec3::ZERO);
+        let query = cluster.center + draws.point().normalize() * (1000.0 * cluster.radius);
+        let (out, _) = Node::of(&[cluster]).far_within(query.into(), query.abs().max_element(), f64::INFINITY);
+        let error = (out[0][0] - exact(&triangles, query)).abs();
+        // The reference itself is wrong by a few 1e-16.
+        assert!(error <= out[1][0] + out[2][0] + 1e-15, "{error} {out:?}");
+        beyond_truncation += u32::from(error > 2.0 * out[1][0] + 1e-15);
+    }
+    assert!(beyond_truncation > 50, "{beyond_truncation}");
+}
+
 /// A tiny triangle that looks along its offset from a far centre comes close to what the bound allows.
 #[test]
 fn the_bound_is_nearly_reached() {
@@ -100,7 +118,7 @@ fn the_bound_is_nearly_reached() {
     // Two equally large ones keep the centre in the middle; both look outward, so that the term of degree four adds up.
     let [a, b, c] = small(-DVec3::X, 1e-3);
     let triangles = [small(DVec3::X, 1e-3), [a, c, b]];
-    let cluster = Cluster::of_triangles(&triangles);
+    let cluster = Cluster::of_triangles(&triangles, DVec3::ZERO);
     let node = Node::of(&[cluster]);
     let query = cluster.center + DVec3::X * 3.0;
     let (out, _) = node.far_within(query.into(), 3.0, f64::INFINITY);

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use multiversion::multiversion;
 
-use super::near::{WIDTH, total};
+use super::near::total;
 use super::reference::WindingNumber;
 use super::sum::Sum;
 use super::tree::WindingTree;
-use super::walk::WAITING;
+use super::walk::Waiting;
 
 /// The share of the tolerance that one cluster may use up at first. About as many are left whole around a query.
 const FIRST_SHARE: f64 = 1.0 / 40.0;
@@ -37,32 +37,18 @@ pub(super) fn winding_number(tree: &WindingTree, scaled: [f64; 3], local: [f64; 
 /// Takes whole what is wrong by at most `threshold`, a solid angle.
 #[multiversion(targets("x86_64+avx2"))]
 fn walk(tree: &WindingTree, scaled: [f64; 3], local: [f64; 3], threshold: f64) -> WindingNumber {
-    let Some(top) = tree.levels.len().checked_sub(1) else {
-        return WindingNumber { value: 0.0, bound: 0.0 };
-    };
     let reach = local.into_iter().fold(0.0, |reach: f64, x| reach.max(x.abs()));
     let (mut sum, mut bound) = (Sum::default(), 0.0);
-    let mut waiting = [(0u32, 0u32); WAITING];
-    waiting[0] = (top as u32, 0);
-    let mut count = 1;
-    while count > 0 {
-        count -= 1;
-        let (level, index) = waiting[count];
-        let (out, mut open) = tree.levels[level as usize][index as usize].far_within(local, reach, threshold);
+    let mut waiting = Waiting::at_root(tree);
+    while let Some((node, place)) = waiting.next() {
+        let (out, open) = node.far_within(local, reach, threshold);
         // Lanes are eight numbers of the size of the largest: their sum is wrong by a few ulps, which `rounding` holds.
         sum.add(total(&out[0]) * (1.0 / (4.0 * PI)));
         bound += (total(&out[1]) + total(&out[2])) * (1.0 / (4.0 * PI));
-        while open != 0 {
-            let child = index * WIDTH as u32 + open.trailing_zeros();
-            open &= open - 1;
-            if level > 0 {
-                waiting[count] = (level - 1, child);
-                count += 1;
-            } else if let Some(block) = tree.blocks.get(child as usize) {
-                let (turns, error) = block.turns_within(scaled);
-                sum.add(turns);
-                bound += error;
-            }
+        for block in waiting.open(place, open) {
+            let (turns, error) = block.turns_within(scaled);
+            sum.add(turns);
+            bound += error;
         }
     }
     WindingNumber { value: sum.total(), bound: (bound + sum.error()) * (1.0 + 1e-6) }

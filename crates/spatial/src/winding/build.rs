@@ -57,12 +57,12 @@ impl WindingTree {
         })?;
         exec.progress(0.7);
         let mut clusters = chunked(exec, eighths, |index| {
-            let mut local = [[DVec3::ZERO; 3]; WIDTH];
+            let mut triangles = [[DVec3::ZERO; 3]; WIDTH];
             let members = members(index);
-            for (corners, item) in local.iter_mut().zip(members) {
-                *corners = scaled(item.element).map(|corner| corner - units.center);
+            for (corners, item) in triangles.iter_mut().zip(members) {
+                *corners = scaled(item.element);
             }
-            Cluster::of_triangles(&local[..members.len()])
+            Cluster::of_triangles(&triangles[..members.len()], units.center)
         })?;
         drop(items);
         drop(scratch);

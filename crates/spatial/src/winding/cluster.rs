@@ -37,9 +37,11 @@ const UP: f64 = 1.0 + 1e-12;
 const LEAST_RADIUS: f64 = 1.0 / (1u64 << 30) as f64;
 
 impl Cluster {
-    /// The cluster of some triangles, given by their corners in local units.
-    pub fn of_triangles(triangles: &[[DVec3; 3]]) -> Self {
-        let bounds = Aabb::from_points(triangles.iter().flatten().copied());
+    /// The cluster of some triangles, given by their corners in scaled units; local units are these about `origin`.
+    ///
+    /// Sides are taken before the origin is: a triangle that is tiny beside its distance to the origin keeps its area.
+    pub fn of_triangles(triangles: &[[DVec3; 3]], origin: DVec3) -> Self {
+        let bounds = Aabb::from_points(triangles.iter().flatten().map(|&corner| corner - origin));
         let weigh = |corners: &[DVec3; 3]| {
             let [a, b, c] = *corners;
             let normal = (b - a).cross(c - a) * 0.5;
@@ -47,13 +49,14 @@ impl Cluster {
             (normal, normal.length() + (b - a).length() * (c - a).length() * 2f64.powi(-24))
         };
         let area: f64 = triangles.iter().map(|corners| weigh(corners).1).sum();
-        let middle = |corners: &[DVec3; 3]| (corners[0] + corners[1] + corners[2]) / 3.0;
+        let local = |corners: &[DVec3; 3]| corners.map(|corner| corner - origin);
+        let middle = |corners: &[DVec3; 3]| local(corners).into_iter().sum::<DVec3>() / 3.0;
         let weighted = triangles.iter().fold(DVec3::ZERO, |sum, corners| sum + middle(corners) * weigh(corners).1);
         let center = single(if area > 0.0 { weighted / area } else { bounds.center() });
         let mut cluster = Self { center, bounds, ..Self::NOTHING };
         for corners in triangles {
             let (normal, area) = weigh(corners);
-            cluster.add_triangle(&corners.map(|corner| corner - center), normal, area);
+            cluster.add_triangle(&local(corners).map(|corner| corner - center), normal, area);
         }
         cluster.radius = (cluster.radius * UP).max(LEAST_RADIUS);
         cluster.square *= UP;

@@ -1,5 +1,7 @@
 //! Clusters far from a query: their dipole, quadrupole and octupole, eight at once.
 
+use std::ops::{Add, Mul, Sub};
+
 use super::cluster::Cluster;
 use super::near::WIDTH;
 
@@ -36,7 +38,7 @@ impl Node {
             let radius = upward(cluster.radius);
             let r = f64::from(radius);
             node.radius[lane] = radius;
-            node.area[lane] = upward(cluster.area);
+            node.area[lane] = upward(cluster.area).max(LEAST_AREA);
             node.cube[lane] = upward(cluster.cube / (r * r * r));
             for (out, &x) in node.center.iter_mut().zip(cluster.center.as_ref()) {
                 out[lane] = x as f32;
@@ -72,17 +74,12 @@ impl Node {
             let inverse = 1.0 / squared.sqrt();
             let (x, y, z) = (x * inverse, y * inverse, z * inverse);
             let ratio = radius * inverse;
-            let [dx, dy, dz] = [0, 1, 2].map(|i| self.dipole[i][lane]);
-            let [q0, q1, q2, q3, q4] = [0, 1, 2, 3, 4].map(|i| self.quadrupole[i][lane]);
-            let [o0, o1, o2, o3, o4, o5, o6] = [0, 1, 2, 3, 4, 5, 6].map(|i| self.octupole[i][lane]);
-            let (xx, yy, zz) = (x * x, y * y, z * z);
-            let dipole = dx * x + dy * y + dz * z;
-            let quadrupole = q0 * (xx - zz) + q1 * (yy - zz) + (q2 * x + q4 * z) * y + q3 * (x * z);
-            let octupole = x * (o0 * (3.0 * yy - xx) + o1 * (3.0 * zz - xx))
-                + y * (o2 * (3.0 * xx - yy) + o3 * (3.0 * zz - yy))
-                + z * (o4 * (3.0 * xx - zz) + o5 * (3.0 * yy - zz))
-                + o6 * (x * y * z);
-            let angle = inverse * inverse * (dipole + ratio * (quadrupole + ratio * octupole));
+            let moments = (
+                [0, 1, 2].map(|i| self.dipole[i][lane]),
+                [0, 1, 2, 3, 4].map(|i| self.quadrupole[i][lane]),
+                [0, 1, 2, 3, 4, 5, 6].map(|i| self.octupole[i][lane]),
+            );
+            let angle = inverse * inverse * expansion([x, y, z], ratio, moments);
             angles[lane] = if is_near { 0.0 } else { angle };
             near |= u32::from(is_near) << lane;
         }
@@ -110,17 +107,12 @@ impl Node {
             let is_far = (ratio < MOST_RATIO) & (truncation <= threshold);
             let area = f64::from(self.area[lane]) * (inverse * inverse);
             let rounding = area * (ROUNDING * (1.0 + ratio * (9.0 + ratio * 64.0)) + PLACES * (1.0 + reach) * inverse);
-            let [dx, dy, dz] = [0, 1, 2].map(|i| f64::from(self.dipole[i][lane]));
-            let [q0, q1, q2, q3, q4] = [0, 1, 2, 3, 4].map(|i| f64::from(self.quadrupole[i][lane]));
-            let [o0, o1, o2, o3, o4, o5, o6] = [0, 1, 2, 3, 4, 5, 6].map(|i| f64::from(self.octupole[i][lane]));
-            let (xx, yy, zz) = (x * x, y * y, z * z);
-            let dipole = dx * x + dy * y + dz * z;
-            let quadrupole = q0 * (xx - zz) + q1 * (yy - zz) + (q2 * x + q4 * z) * y + q3 * (x * z);
-            let octupole = x * (o0 * (3.0 * yy - xx) + o1 * (3.0 * zz - xx))
-                + y * (o2 * (3.0 * xx - yy) + o3 * (3.0 * zz - yy))
-                + z * (o4 * (3.0 * xx - zz) + o5 * (3.0 * yy - zz))
-                + o6 * (x * y * z);
-            let angle = inverse * inverse * (dipole + ratio * (quadrupole + ratio * octupole));
+            let moments = (
+                [0, 1, 2].map(|i| f64::from(self.dipole[i][lane])),
+                [0, 1, 2, 3, 4].map(|i| f64::from(self.quadrupole[i][lane])),
+                [0, 1, 2, 3, 4, 5, 6].map(|i| f64::from(self.octupole[i][lane])),
+            );
+            let angle = inverse * inverse * expansion([x, y, z], ratio, moments);
             out[0][lane] = if is_far { angle } else { 0.0 };
             out[1][lane] = if is_far { truncation } else { 0.0 };
             out[2][lane] = if is_far { rounding } else { 0.0 };
@@ -130,10 +122,35 @@ impl Node {
     }
 }
 
+/// Coefficients of the dipole, the quadrupole and the octupole.
+type Moments<T> = ([T; 3], [T; 5], [T; 7]);
+
+/// The first three terms of a cluster in a direction, times the squared distance. `ratio` is the radius over the
+/// distance.
+#[inline(always)]
+fn expansion<T>([x, y, z]: [T; 3], ratio: T, ([dx, dy, dz], [q0, q1, q2, q3, q4], o): Moments<T>) -> T
+where
+    T: Copy + From<f32> + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+{
+    let three = T::from(3.0);
+    let [o0, o1, o2, o3, o4, o5, o6] = o;
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let dipole = dx * x + dy * y + dz * z;
+    let quadrupole = q0 * (xx - zz) + q1 * (yy - zz) + (q2 * x + q4 * z) * y + q3 * (x * z);
+    let octupole = x * (o0 * (three * yy - xx) + o1 * (three * zz - xx))
+        + y * (o2 * (three * xx - yy) + o3 * (three * zz - yy))
+        + z * (o4 * (three * xx - zz) + o5 * (three * yy - zz))
+        + o6 * (x * y * z);
+    dipole + ratio * (quadrupole + ratio * octupole)
+}
+
 /// Clusters nearer than their radius over this are always opened: the bound on what rounding of places does needs it.
 const MOST_RATIO: f64 = 0.75;
 /// Half an ulp of single precision, with room: moments are stored with it.
 const ROUNDING: f64 = 1.0 / (1u64 << 23) as f64;
+/// Clusters count as having this area at least, in the bounds: their moments may underflow in single precision, each by
+/// half of 2⁻¹⁴⁹, which `ROUNDING` times this area holds many times.
+const LEAST_AREA: f32 = 1.0 / (1u128 << 120) as f32;
 /// What the rounding of places does at most, for each unit of area over the cubed distance.
 const PLACES: f64 = 1.0 / (1u64 << 44) as f64;
 

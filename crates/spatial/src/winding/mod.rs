@@ -10,12 +10,15 @@ mod near;
 mod pack;
 mod reference;
 mod scaled_input;
+mod side;
 mod sum;
 mod tree;
 mod walk;
 
 #[cfg(test)]
 mod bound_tests;
+#[cfg(test)]
+mod size_tests;
 #[cfg(test)]
 mod tests;
 

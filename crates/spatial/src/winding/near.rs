@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::arctangent::angle;
-use super::reference::careful_turns;
+use super::reference::turns_of;
 
 /// How many triangles are evaluated together, and children of a node.
 pub(crate) const WIDTH: usize = 8;
@@ -52,11 +52,11 @@ impl Block {
         let mut doubtful = [false; WIDTH];
         for lane in 0..WIDTH {
             turns[lane] = angle(det[lane], den[lane]) * (1.0 / TAU);
-            doubtful[lane] = near_the_jump(det[lane], den[lane], product[lane]);
+            doubtful[lane] = is_doubtful(det[lane], den[lane], product[lane]);
         }
         if doubtful != [false; WIDTH] {
             for lane in (0..WIDTH).filter(|&lane| doubtful[lane]) {
-                turns[lane] = careful_turns(&self.triangle(lane), query.into(), det[lane], den[lane], 0.0).0;
+                turns[lane] = turns_of(&self.triangle(lane), query.into()).0;
             }
         }
         total(&turns)
@@ -75,22 +75,25 @@ impl Block {
             let error = product[lane] * 2f64.powi(-48) / length + 2f64.powi(-50);
             // Also where 0/0 is not a number.
             errors[lane] = if error < 0.5 { error } else { 0.5 };
-            doubtful[lane] = near_the_jump(det[lane], den[lane], product[lane]);
+            doubtful[lane] = is_doubtful(det[lane], den[lane], product[lane]);
         }
         if doubtful != [false; WIDTH] {
             for lane in (0..WIDTH).filter(|&lane| doubtful[lane]) {
-                (turns[lane], errors[lane]) =
-                    careful_turns(&self.triangle(lane), query.into(), det[lane], den[lane], errors[lane]);
+                (turns[lane], errors[lane]) = turns_of(&self.triangle(lane), query.into());
             }
         }
         (total(&turns), total(&errors) * (1.0 + 1e-9))
     }
 }
 
-/// Whether the query may lie on either side of the triangle's plane, inside its border.
+/// Below this a product of lengths, each at most 2⁴² or so, may have lost digits to underflow.
+const LEAST_PRODUCT: f64 = 1.0 / (1u128 << 100) as f64 / (1u128 << 100) as f64 / (1u128 << 100) as f64;
+
+/// Whether the query may lie on either side of the triangle's plane, inside its border, or is so close to corners that
+/// numbers may underflow: then the triangle is looked at alone.
 #[inline(always)]
-fn near_the_jump(det: f64, den: f64, product: f64) -> bool {
-    (det.abs() <= 2f64.powi(-45) * product) & (den <= 2f64.powi(-20) * product)
+fn is_doubtful(det: f64, den: f64, product: f64) -> bool {
+    ((det.abs() <= 2f64.powi(-45) * product) & (den <= 2f64.powi(-20) * product)) | (product < LEAST_PRODUCT)
 }
 
 #[inline(always)]

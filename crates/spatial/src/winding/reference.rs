@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use shapeloom_core::predicates::orient3d;
 use shapeloom_core::{Exec, parallel};
 
 use super::scaled_input::{Units, checked_bounds};
+use super::side::side;
 use super::sum::Sum;
 use crate::BvhError;
 
@@ -16,8 +16,9 @@ use crate::BvhError;
 pub struct WindingNumber {
     /// The winding number as computed.
     pub value: f64,
-    /// The largest distance to the true one, proven. Infinite where nothing is known, as for queries that are not
-    /// finite.
+    /// The largest distance to the true one, proven, for triangles of any size. The shape that it speaks of is the
+    /// given one, but that coordinates below 1e-307 of its size are rounded to multiples of 5e-324 of it. Infinite
+    /// where nothing is known, as for queries that are not finite.
     pub bound: f64,
 }
 
@@ -47,8 +48,8 @@ pub(crate) fn beyond_horizon(triangles: usize) -> WindingNumber {
 /// the value is therefore the mean over a small ball: 1/2 inside a face of a closed mesh, the share of the interior
 /// angle on an edge or corner. A query that is not finite has the value NaN.
 ///
-/// The bound holds every rounding error: about 1e-15 a triangle, growing with the size of a triangle over the query's
-/// distance to its border. Cost: O(n), some tens of nanoseconds a triangle.
+/// The bound holds every rounding error, with the limit that [`WindingNumber::bound`] names: about 1e-15 a triangle,
+/// growing with the size of a triangle over the query's distance to its border. Cost: O(n), some tens of nanoseconds a triangle.
 ///
 /// # Errors
 /// An index out of range, a corner that is not finite, more than `u32::MAX - 1` triangles, or the reason to stop.
@@ -88,32 +89,43 @@ pub fn generalized_winding_number(
 /// The solid angle of a triangle over 4π, and a bound of the rounding error; positive where the query is behind the
 /// counter-clockwise side.
 ///
-/// Van Oosterom and Strackee: tan(Ω/2) = det / den. With u = 2⁻⁵³ and the corners relative to the query within u each,
-/// the determinant is wrong by at most 14 u and the denominator by 56 u of |a||b||c|, so the angle of the point (den,
-/// det) by 91 u |a||b||c| over its length. Turned into whole turns that is below 24 u; 2⁻⁴⁸ and 2⁻⁵¹ for the arctangent
-/// hold it.
+/// Van Oosterom and Strackee: tan(Ω/2) = det / den. It depends on the directions of the corners alone, so each is
+/// brought to a length of about 1 first, by a power of two of its own: nothing underflows, whatever the sizes. With u =
+/// 2⁻⁵³ and the corners relative to the query within u each, the determinant is wrong by at most 14 u and the
+/// denominator by 56 u of |a||b||c|, so the angle of the point (den, det) by 91 u |a||b||c| over its length. Turned into
+/// whole turns that is below 24 u; 2⁻⁴⁸ and 2⁻⁵¹ for the arctangent hold it.
+///
+/// Near the plane inside the triangle the solid angle jumps; there the side is decided exactly, from the corners and the
+/// query as they are and not from their rounded differences. So the error is never more than 1/2.
 pub(crate) fn turns_of(corners: &[DVec3; 3], query: DVec3) -> (f64, f64) {
-    let [a, b, c] = corners.map(|corner| corner - query);
+    let [a, b, c] = corners.map(|corner| of_size_one(corner - query));
     let (la, lb, lc) = (a.length(), b.length(), c.length());
     let product = la * lb * lc;
     let det = a.dot(b.cross(c));
     let den = product + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-    let error = (2f64.powi(-48) * product / det.hypot(den) + 2f64.powi(-51)).min(0.5);
     // NaN, where the query is a corner, becomes 1/2 by `min`.
+    let error = (2f64.powi(-48) * product / det.hypot(den) + 2f64.powi(-51)).min(0.5);
     if det.abs() > 2f64.powi(-45) * product || den > 2f64.powi(-20) * product {
         return (det.atan2(den) / TAU, error);
     }
-    careful_turns(corners, query, det, den, error)
-}
-
-/// What is left to decide near the plane inside the triangle, where the solid angle jumps: the side, exactly.
-#[cold]
-pub(crate) fn careful_turns(corners: &[DVec3; 3], query: DVec3, det: f64, den: f64, error: f64) -> (f64, f64) {
     let size = det.abs().atan2(den) / TAU;
     // Corners on a line lie in a plane with everything.
-    match orient3d(corners[0], corners[1], corners[2], query) {
+    match side(corners, query) {
         Ordering::Equal => (0.0, 0.0),
         Ordering::Less => (size, error),
         Ordering::Greater => (-size, error),
     }
+}
+
+/// The vector times a power of two that brings its largest coordinate to between 1 and 2; zero stays zero.
+fn of_size_one(v: DVec3) -> DVec3 {
+    let largest = v.abs().max_element();
+    // Subnormal numbers have no exponent of their own.
+    let v = if largest < f64::MIN_POSITIVE { v * 2f64.powi(100) } else { v };
+    let largest = v.abs().max_element();
+    if largest == 0.0 {
+        return v;
+    }
+    // Clearing the fraction leaves the power of two.
+    v / f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000)
 }

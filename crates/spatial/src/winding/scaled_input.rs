@@ -22,7 +22,7 @@ impl Units {
         let half = (bounds.max * 0.5 - bounds.min * 0.5).max_element();
         // A shape that is tiny beside its coordinates must not scale them beyond the numbers.
         let size = half.max(center.abs().max_element() * 2f64.powi(-60));
-        let size = if size > 0.0 { size.clamp(2f64.powi(-1000), 2f64.powi(1000)) } else { 1.0 };
+        let size = if size > 0.0 { size.max(2f64.powi(-1000)) } else { 1.0 };
         // Clearing the fraction leaves the power of two.
         let unit = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
         Self { per_unit: 1.0 / unit, center: center / unit }

@@ -302,3 +302,36 @@ fn open_meshes_follow_their_boundary() {
     // A circle seen from its axis at a distance of its radius: 2π(1 − 1/√2), for a polygon of 24 corners nearly.
     assert!((low - (1.0 - FRAC_1_SQRT_2) / 2.0).abs() < 2e-3);
 }
+
+#[test]
+fn details_are_seen_beside_large_shapes() {
+    let place = DVec3::new(0.7, 0.3, -0.9);
+    let all = joined(&[bumpy_ball(6, DVec3::ZERO, 1.0, 0.0), bumpy_ball(40, place, 1e-6, 0.0)]);
+    let tree = tree(&all);
+    let mut draws = Draws::new(13);
+    for _ in 0..100 {
+        let direction = draws.point().normalize();
+        for (radius, wanted) in [(0.7e-6, 1.0), (0.95e-6, 1.0), (1.05e-6, 0.0), (2e-6, 0.0)] {
+            let found = tree.winding_number(place + direction * radius);
+            assert!((found - wanted).abs() < 6e-3, "{radius}: {found}");
+        }
+    }
+}
+
+/// Close to an edge the two faces' angles depend on the last digits: the bounds say so.
+#[test]
+fn close_to_edges_rounding_stays_within_the_bound() {
+    let ball = bumpy_ball(12, DVec3::ZERO, 1.0, 0.2);
+    let tree = tree(&ball);
+    let mut draws = Draws::new(14);
+    for away in [1e-6, 1e-9, 1e-11] {
+        for &[a, b, _] in &ball.1 {
+            let [a, b] = [a, b].map(|corner| ball.0[corner as usize]);
+            let query = a.lerp(b, draws.signed() * 0.4 + 0.5) + draws.point() * away;
+            for found in [tree.winding_number_exact(query), reference(&ball, query)] {
+                let error = (found.value - found.value.round()).abs();
+                assert!(error <= found.bound && found.bound < 0.1, "{away}: {found:?}");
+            }
+        }
+    }
+}

@@ -78,10 +78,11 @@ impl WindingTree {
     /// The winding number with a proven bound, at most `tolerance` where rounding allows it.
     ///
     /// Clusters are opened until the proven bounds of those that are left sum up to no more than the tolerance. The
-    /// bound holds truncation and rounding, so the true winding number lies within `bound` of `value` always. It
-    /// exceeds the tolerance only where rounding alone does: see [`WindingTree::winding_number_exact`]. The tighter the
-    /// tolerance, the slower: 0.3 costs a few times the fast value, 0.01 fifty times; below 1e-6 nearly every triangle
-    /// is visited. A NaN or negative tolerance counts as 0.
+    /// bound holds truncation and rounding, so the true winding number lies within `bound` of `value`, whatever the
+    /// sizes of triangles and distances; only coordinates below 1e-307 of the shape's size count as rounded (see
+    /// [`WindingNumber::bound`]). The bound exceeds the tolerance only where rounding alone does: see
+    /// [`WindingTree::winding_number_exact`]. The tighter the tolerance, the slower: 0.3 costs a few times the fast
+    /// value, 0.01 fifty times; below 1e-6 nearly every triangle is visited. A NaN or negative tolerance counts as 0.
     pub fn winding_number_within(&self, query: DVec3, tolerance: f64) -> WindingNumber {
         match self.place(query) {
             Ok((scaled, local)) => bounded::winding_number(self, scaled.into(), local.into(), tolerance),

@@ -108,7 +108,7 @@ impl Subject {
             let placed = part.placed();
             let Geometry::TriMesh(mesh) = &*placed else { continue };
             let welded = Weld::new().convert_with(mesh, exec)?.value;
-            let found = Soundness::of(&welded, exec, &mut judged)?;
+            let (found, _) = Soundness::of(&welded, exec, &mut judged)?;
             self.soundness = Some(match self.soundness.take() {
                 Some(before) => before.with(&found),
                 None => found,
