@@ -182,8 +182,9 @@ fn everything_that_answers_rays_and_closest_points_keeps_the_laws() {
 fn no_implementor_is_forgotten() {
     let sources = files_below("crates", ".rs");
     assert!(sources.len() > 50);
-    for path in sources {
-        let source = std::fs::read_to_string(root().join(&path)).expect("a source file");
+    // Shapes made for a test are that test's affair.
+    for path in sources.iter().filter(|path| !path.display().to_string().ends_with("tests.rs")) {
+        let source = std::fs::read_to_string(root().join(path)).expect("a source file");
         for line in source.lines().filter(|line| line.trim_start().starts_with("impl")) {
             let Some((_, name)) = ["Rays for ", "ClosestPoint for "].iter().find_map(|words| line.split_once(words))
             else {

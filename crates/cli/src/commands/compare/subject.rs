@@ -9,6 +9,7 @@ use shapeloom_core::{Category, Convert, Deviation, Exec, Findings, Place, Reserv
 use shapeloom_judge::Simplices;
 use shapeloom_mesh::{TriMesh, Weld};
 use shapeloom_shape::{Geometry, Kind, Part, Shape, UpAxis};
+use shapeloom_spatial::is_closed;
 
 use crate::account;
 use crate::arguments::{SourceArguments, WayArguments};
@@ -113,7 +114,7 @@ impl Subject {
                 Some(before) => before.with(&found),
                 None => found,
             });
-            closed = closed && is_cycle(mesh, exec)?;
+            closed = closed && is_closed(mesh.positions(), mesh.triangles(), exec)?;
         }
         let Some(soundness) = &self.soundness else { return Ok(()) };
         self.encloses = closed;
@@ -214,29 +215,4 @@ fn simplices(shape: &Shape, exec: &Exec) -> Result<(Simplices<'static>, Reservat
         triangles.extend(found.triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
     }
     Ok((Simplices::new(positions, triangles), memory))
-}
-
-/// Whether every side is passed as often one way as the other, vertices at one place taken as one: then the volume does
-/// not depend on where it is measured from.
-fn is_cycle(mesh: &TriMesh, exec: &Exec) -> Result<bool, Failure> {
-    let _memory = exec.reserve_elements(mesh.triangles().len() as u64 * 3 + mesh.positions().len() as u64, 32)?;
-    let positions = mesh.positions();
-    // Adding zero turns -0 into 0.
-    let key = |vertex: u32| (positions[vertex as usize] + DVec3::ZERO).to_array().map(f64::to_bits);
-    let mut order: Vec<u32> = (0..positions.len() as u32).collect();
-    order.sort_unstable_by_key(|&vertex| key(vertex));
-    let mut one = vec![0u32; positions.len()];
-    for (place, &vertex) in order.iter().enumerate() {
-        let same = place > 0 && key(order[place - 1]) == key(vertex);
-        one[vertex as usize] = if same { one[order[place - 1] as usize] } else { vertex };
-    }
-    exec.check()?;
-    let sides = mesh.triangles().iter().flat_map(|triangle| {
-        let [a, b, c] = triangle.map(|vertex| one[vertex as usize]);
-        [(a, b), (b, c), (c, a)]
-    });
-    let mut sides: Vec<(u32, u32, i32)> =
-        sides.filter(|(a, b)| a != b).map(|(a, b)| if a < b { (a, b, 1) } else { (b, a, -1) }).collect();
-    sides.sort_unstable();
-    Ok(sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).all(|same| same.iter().map(|side| side.2).sum::<i32>() == 0))
 }
