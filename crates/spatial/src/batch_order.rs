@@ -7,7 +7,7 @@ use glam::DVec3;
 use shapeloom_core::parallel::fill_chunks;
 use shapeloom_core::{Exec, Stop};
 
-use crate::triangle_bvh::Units;
+use crate::scaled_input::Units;
 
 /// How many queries are ordered together. More bring neighbours closer to each other; this many fit about as many
 /// triangles as the caches do not.

@@ -30,6 +30,7 @@ mod hierarchy;
 #[cfg(test)]
 mod leak_tests;
 mod rays;
+mod scaled_input;
 mod signed_distance;
 mod space_order;
 mod stack;

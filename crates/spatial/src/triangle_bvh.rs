@@ -1,16 +1,17 @@
 //! A bounding volume hierarchy over triangles.
 
 use std::fmt;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
-use shapeloom_core::parallel::{fill_chunks, map_chunks};
+use shapeloom_core::parallel::fill_chunks;
 use shapeloom_core::{Aabb, Exec, Reservation, Stop};
 
 use crate::BvhError;
 use crate::equal_triangles::Groups;
 use crate::hierarchy::{Bounds, Hierarchy};
+use crate::scaled_input::Units;
+use crate::scaled_input::checked_bounds;
 use crate::triangle_block::Block;
 use crate::wide_node::Node;
 
@@ -38,28 +39,6 @@ pub struct TriangleBvh {
     _memory: Vec<Reservation>,
 }
 
-/// Scaled units, a power of two apart from the model's so that scaling is exact, in which the shape has a size of about
-/// 1: nothing overflows whatever the model's unit is. Local units are these about the centre.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Units {
-    pub unit: f64,
-    pub per_unit: f64,
-    pub center: DVec3,
-}
-
-impl Units {
-    fn new(bounds: &Aabb) -> Self {
-        let center = bounds.center();
-        let half = (bounds.max * 0.5 - bounds.min * 0.5).max_element();
-        // A shape that is tiny beside its coordinates must not scale them beyond the numbers.
-        let size = half.max(center.abs().max_element() * 2f64.powi(-60));
-        let size = if size > 0.0 { size.clamp(2f64.powi(-1000), 2f64.powi(1000)) } else { 1.0 };
-        // Clearing the fraction leaves the power of two.
-        let unit = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
-        Self { unit, per_unit: 1.0 / unit, center: center / unit }
-    }
-}
-
 impl Units {
     /// The origin of blocks, in scaled units: none where the shape lies near it, so that coordinates given in single
     /// precision are held exactly.
@@ -79,9 +58,6 @@ impl TriangleBvh {
     /// the budget, or the reason to stop.
     pub fn build(positions: &[DVec3], triangles: &[[u32; 3]], exec: &Exec) -> Result<Self, BvhError> {
         exec.check()?;
-        if triangles.len() >= u32::MAX as usize {
-            return Err(BvhError::TooMany { found: triangles.len() });
-        }
         let scratch = exec.reserve_elements(triangles.len() as u64, Hierarchy::BUILD_BYTES)?;
         let bounds = checked_bounds(positions, triangles, exec)?;
         let units = Units::new(&bounds);
@@ -186,26 +162,6 @@ impl fmt::Debug for TriangleBvh {
             .field("bounds", &self.bounds)
             .finish_non_exhaustive()
     }
-}
-
-fn checked_bounds(positions: &[DVec3], triangles: &[[u32; 3]], exec: &Exec) -> Result<Aabb, BvhError> {
-    let parts = map_chunks(exec, triangles.len(), 1 << 14, |range: Range<usize>| {
-        let mut bounds = Aabb::EMPTY;
-        for triangle in range {
-            for (corner, &found) in triangles[triangle].iter().enumerate() {
-                let (triangle, corner) = (triangle as u32, corner as u8);
-                let Some(&position) = positions.get(found as usize) else {
-                    return Err(BvhError::Index { triangle, corner, found, positions: positions.len() });
-                };
-                if !position.is_finite() {
-                    return Err(BvhError::NotFinite { triangle, position: found, found: position });
-                }
-                bounds = Aabb { min: bounds.min.min(position), max: bounds.max.max(position) };
-            }
-        }
-        Ok(bounds)
-    })?;
-    Ok(parts.into_iter().fold(Aabb::EMPTY, Aabb::union))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shapeloom_core::Ray;
 
-use crate::triangle_bvh::Units;
+use crate::scaled_input::Units;
 
 /// Children of a node: as many as AVX2 has lanes of `f32`.
 pub(crate) const WIDTH: usize = 8;

@@ -3,9 +3,9 @@
 use glam::DVec3;
 use shapeloom_core::{Exec, parallel};
 
-use super::scaled_input::Units;
 use super::tree::WindingTree;
 use crate::BvhError;
+use crate::scaled_input::Units;
 
 /// How many queries are ordered together: more save little, and the order takes 16 bytes a query.
 const SECTION: usize = 1 << 22;
@@ -95,7 +95,7 @@ mod tests {
     #[test]
     fn answers_come_back_in_order() {
         let queries: Vec<DVec3> = (0..1000).map(|i| DVec3::splat(f64::from(i * 7919 % 1000) / 500.0 - 1.0)).collect();
-        let units = Units { per_unit: 1.0, center: DVec3::ZERO };
+        let units = Units { unit: 1.0, per_unit: 1.0, center: DVec3::ZERO };
         let mut out = vec![0.0; 1000];
         along_curve(&units, &queries, &mut out, &Exec::default(), |query, _| query.x).unwrap();
         assert!(queries.iter().zip(&out).all(|(query, &x)| query.x == x));

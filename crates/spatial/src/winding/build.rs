@@ -7,9 +7,9 @@ use super::cluster::Cluster;
 use super::far::Node;
 use super::near::{Block, WIDTH};
 use super::pack::{Item, pack};
-use super::scaled_input::{Units, checked_bounds};
 use super::tree::WindingTree;
 use crate::BvhError;
+use crate::scaled_input::{Units, checked_bounds};
 
 impl WindingTree {
     /// Builds the tree over `triangles`, index triples into `positions`.

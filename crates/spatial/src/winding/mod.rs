@@ -9,7 +9,6 @@ mod far;
 mod near;
 mod pack;
 mod reference;
-mod scaled_input;
 mod side;
 mod sum;
 mod tree;

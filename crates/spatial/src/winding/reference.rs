@@ -6,10 +6,10 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use shapeloom_core::{Exec, parallel};
 
-use super::scaled_input::{Units, checked_bounds};
 use super::side::side;
 use super::sum::Sum;
 use crate::BvhError;
+use crate::scaled_input::{Units, checked_bounds};
 
 /// A winding number and how far it may be from the true one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,9 +8,9 @@ use shapeloom_core::{Aabb, Reservation};
 use super::far::Node;
 use super::near::Block;
 use super::reference::{WindingNumber, beyond, beyond_horizon};
-use super::scaled_input::Units;
 use super::sum::Sum;
 use super::{bounded, walk};
+use crate::scaled_input::Units;
 
 /// Triangles prepared for generalised winding numbers: fast ones, ones within a tolerance, and exact ones.
 ///

@@ -7,7 +7,7 @@ use shapeloom_convert::{Job, convert_shape, plan};
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Category, Convert, Deviation, Exec, Findings, Place, Reservation, Severity};
 use shapeloom_judge::Simplices;
-use shapeloom_mesh::{TriMesh, Weld};
+use shapeloom_mesh::Weld;
 use shapeloom_shape::{Geometry, Kind, Part, Shape, UpAxis};
 use shapeloom_spatial::is_closed;
 

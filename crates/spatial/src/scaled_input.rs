@@ -1,4 +1,4 @@
-//! Input checked and brought to a size of about 1. The hierarchy for rays has the same of its own.
+//! Input checked and brought to a size of about 1.
 
 use std::ops::Range;
 
@@ -11,6 +11,8 @@ use crate::BvhError;
 /// 1: nothing overflows whatever the model's unit is. Local units are these about the centre.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Units {
+    /// The model's length of one unit.
+    pub unit: f64,
     pub per_unit: f64,
     /// In scaled units.
     pub center: DVec3,
@@ -25,7 +27,7 @@ impl Units {
         let size = if size > 0.0 { size.max(2f64.powi(-1000)) } else { 1.0 };
         // Clearing the fraction leaves the power of two.
         let unit = f64::from_bits(size.to_bits() & 0x7ff0_0000_0000_0000);
-        Self { per_unit: 1.0 / unit, center: center / unit }
+        Self { unit, per_unit: 1.0 / unit, center: center / unit }
     }
 }
 
