@@ -2,7 +2,7 @@
 
 use shapeloom_core::glam::DVec3;
 
-use super::foot::distance_to_triangle;
+use super::foot::{distance_to_triangle, length_up};
 use super::patchwork::{self, Patchwork};
 use super::side::{Probe, Side};
 
@@ -50,6 +50,8 @@ pub(super) struct Farthest {
 impl Farthest {
     pub fn new(place: DVec3, root: u32, probe: Probe, depth: u16) -> Self {
         let lower = (probe.lower - f64::from(depth) * DRIFT).max(0.0);
+        // What is no number proves nothing.
+        let lower = if lower.is_finite() { lower } else { 0.0 };
         Self { lower, place, root, probe }
     }
 
@@ -125,7 +127,14 @@ impl<'a> Search<'a> {
             depth: 0,
             cuts: 0,
         };
-        self.bound(&mut cell);
+        // An element that the other shape has too, under the same number: a shape is 0 away from itself, however its
+        // elements overlap.
+        let twin = (root as usize) < self.other.triangles.len() && self.other.corners(root) == corners;
+        if twin {
+            (cell.upper, cell.common) = (0.0, root);
+        } else {
+            self.bound(&mut cell);
+        }
         cell
     }
 
@@ -136,7 +145,7 @@ impl<'a> Search<'a> {
         // A distance changes no faster than the place: no place of a triangle is farther from all corners than its
         // longest side divided by the root of 3, nor from any one corner than that one's longer side.
         let [a, b, c] = cell.corners;
-        let [ab, bc, ca] = [a.distance(b), b.distance(c), c.distance(a)];
+        let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(from, to)| length_up(to - from));
         let longest = ab.max(bc).max(ca);
         let [da, db, dc] = cell.distances;
         lower_to(cell, da.max(db).max(dc) + longest * 0.577_350_269_189_626);
@@ -173,7 +182,7 @@ impl<'a> Search<'a> {
         if !candidates.contains(&probe.element) {
             lower_by(cell, probe.element);
         }
-        let reach = middle.distance(a).max(middle.distance(b)).max(middle.distance(c));
+        let reach = [a, b, c].map(|corner| length_up(corner - middle)).into_iter().fold(0.0, f64::max);
         lower_to(cell, probe.upper + reach + DRIFT);
         if !self.goal.is_met(cell.upper) && !candidates.contains(&probe.element) {
             self.cover(cell, probe.element);

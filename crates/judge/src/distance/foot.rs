@@ -16,6 +16,14 @@ pub(super) fn up(distance: f64) -> f64 {
     distance * LENGTH + PAD
 }
 
+/// No less than the length of a vector: squares of coordinates below about 1e-154 vanish, those of zero alone are nothing.
+pub(super) fn length_up(v: DVec3) -> f64 {
+    if v == DVec3::ZERO { 0.0 } else { v.length() * LENGTH + VANISHING }
+}
+
+/// More than a length whose square vanishes or is rounded with it, and far below all other rounding.
+const VANISHING: f64 = 1e-150;
+
 /// No less than the distance from a point to a triangle; 0 where the point is one of the corners.
 ///
 /// The foot on the plane where it falls inside, else the nearest of the sides: each is a point of the triangle, so that
@@ -102,6 +110,9 @@ impl FootError {
 
     /// No more than the distance of which the computed one is `distance`.
     pub(super) fn down(&self, distance: f64) -> f64 {
+        if !distance.is_finite() {
+            return 0.0;
+        }
         let step = (1..Self::STEPS).rev().find(|&step| distance <= Self::reach(step)).unwrap_or(0);
         let error = self.0[step];
         let squared = distance * distance * (2.0 - LENGTH) - error * error;

@@ -33,6 +33,21 @@ pub struct MeanDistance {
 }
 
 impl MeanDistance {
+    /// The same where no point is farther away than `most`: neither is a mean.
+    pub(super) fn at_most(self, most: f64) -> Self {
+        let estimate = |found: Estimate| Estimate {
+            value: found.value.min(most),
+            lower: found.lower.min(most),
+            upper: found.upper.min(most),
+        };
+        Self {
+            mean: estimate(self.mean),
+            rms: estimate(self.rms),
+            largest_sampled: self.largest_sampled.min(most),
+            samples: self.samples,
+        }
+    }
+
     /// In model units; the bounds are rounded outward.
     pub(super) fn unscaled(self, scale: Scale) -> Self {
         let estimate = |found: Estimate| Estimate {

@@ -23,6 +23,8 @@
 //! ```
 
 mod cell;
+#[cfg(test)]
+mod extreme_tests;
 mod foot;
 mod hausdorff;
 mod mean;

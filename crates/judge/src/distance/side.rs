@@ -121,7 +121,12 @@ impl<'a> Side<'a> {
     fn probed(&self, place: DVec3, found: Option<Closest>) -> Probe {
         match found {
             Some(closest) => {
-                let distance = closest.distance_squared.sqrt();
+                // The hierarchy works in units of its own: beside a tiny shape a square can be beyond the numbers. It is
+                // then 1e-150 of the distance across, so that any of its points is the nearest, the rounding of a
+                // distance aside.
+                let near = closest.distance_squared.is_finite();
+                let squared = if near { closest.distance_squared } else { (closest.point - place).length_squared() };
+                let distance = squared.sqrt();
                 let corner = distance == 0.0 && self.corners(closest.element).contains(&place);
                 let upper = if corner { 0.0 } else { up(distance) };
                 Probe {
