@@ -311,6 +311,71 @@ fn pictures_are_coloured_by_distance() {
     assert_eq!(with(&[&a, "x.png", "--color", "mood"]).code, 2);
 }
 
+/// What cannot be drawn is measured and told all the same; where only a picture was wanted the error says why there is none.
+#[test]
+fn sizes_that_cannot_be_drawn_are_measured() {
+    let folder = Folder::new();
+    let unit = folder.with("unit.off", &cube([0.0; 3], 1.0));
+    for (index, size) in [1e300, 1e153, 1e150, 1e-300].into_iter().enumerate() {
+        let wild = folder.with(&format!("wild{index}.off"), &cube([0.0; 3], size));
+        let out = folder.path(&format!("report{index}"));
+        // Beside the unit cube a tiny one is no trouble for a view.
+        let other = if size > 1.0 { &unit } else { &wild };
+        let outcome = run(&["compare", &wild, other, "--report", &out]);
+        assert_eq!(outcome.code, 0, "{size}: {}", outcome.err);
+        assert!(outcome.err.contains("pictures are left out"), "{size}: {}", outcome.err);
+        assert!(String::from_utf8_lossy(&outcome.out).contains("Hausdorff distance: from "), "{size}");
+        let page = fs::read_to_string(Path::new(&out).join("index.html")).expect("a page");
+        assert!(page.contains("<p>pictures are left out"), "{size}");
+        assert_eq!(files(Path::new(&out)), ["distances.csv", "index.html"], "{size}");
+        let png = folder.path("x.png");
+        for rest in [&[][..], &["--color", "distance", "--reference", &unit], &["--turntable", "2"]] {
+            let outcome = run(&[&["render", &wild, &png, "--size", "64x48"], rest].concat());
+            assert_eq!(outcome.code, 4, "{size} {rest:?}: {}", outcome.err);
+            assert!(outcome.err.contains("E-picture-size") && !outcome.err.contains("colours:"), "{}", outcome.err);
+        }
+    }
+    let empty = folder.with("empty.off", "OFF\n0 0 0\n");
+    let outcome = run(&["render", &empty, "x.png", "--color", "distance", "--reference", &unit]);
+    assert!(outcome.code == 4 && outcome.err.contains("E-picture-empty"), "{}", outcome.err);
+    assert!(!outcome.err.contains("colours:"), "{}", outcome.err);
+}
+
+#[test]
+fn findings_name_their_file_where_there_are_several() {
+    let folder = Folder::new();
+    let flat = folder.with("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n");
+    let cube = folder.with("cube.off", &cube([0.0; 3], 1.0));
+    let alone = run(&["info", &flat]).err;
+    let warning = alone.lines().find(|line| line.starts_with("warning[")).expect("a warning").to_owned();
+    let lines = |outcome: &str| outcome.lines().filter(|line| line.contains("warning[")).map(str::to_owned).collect();
+    let found: Vec<String> = lines(&run(&["compare", &cube, &flat]).err);
+    assert_eq!(found, [format!("{flat}: {warning}")]);
+    let png = folder.path("x.png");
+    let words = ["render", &flat, &png, "--size", "64x48", "--color", "distance", "--reference", &cube];
+    let outcome = run(&words);
+    assert_eq!(lines(&outcome.err) as Vec<String>, [format!("{flat}: {warning}")], "{}", outcome.err);
+    // Six digits of √½.
+    assert!(outcome.err.contains("(dark) to 0."), "{}", outcome.err);
+    let end = outcome.err.split("(dark) to ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a number");
+    assert!(end.len() <= 8, "{end}");
+}
+
+/// Another way to the same bounds: a tiny shape is a point.
+#[test]
+fn a_tiny_shape_has_true_distances() {
+    let folder = Folder::new();
+    let segment = folder.with("segment.obj", "v 1 0 0\nv 0 1 0\nl 1 2\n");
+    for size in ["1e-150", "1e-160", "1e-250", "1e-300"] {
+        let point = folder.with("point.obj", &format!("v {size} {size} 0\np 1\n"));
+        for words in [["compare", &segment, &point, "--json"], ["compare", &point, &segment, "--json"]] {
+            let found = run(&words).json();
+            let (lower, upper) = (number(&found["hausdorff"]["lower"]), number(&found["hausdorff"]["upper"]));
+            assert!(lower <= 1.0 && upper >= 1.0 && upper - lower < 0.01, "{size}: {lower} {upper}");
+        }
+    }
+}
+
 /// The bounds hold what another way of measuring finds on random shapes, and the means what sampling finds.
 #[test]
 fn distances_hold_what_brute_force_finds() {

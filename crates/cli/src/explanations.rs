@@ -66,6 +66,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-output-write", "The output cannot be written: a folder cannot be made, is not writable, or the disk is full."),
     ("E-picture-format", "Pictures are written as PNG; give the output that extension."),
     ("E-picture-empty", "Nothing in the shape has a surface that could be drawn."),
+    (
+        "E-picture-size",
+        "The shape is so large, so small or so far away that no view takes it in: squares of its coordinates are beyond the numbers.",
+    ),
     ("E-plan-method", "No converter has the name given with --method; `shapeloom graph` lists them."),
     ("E-plan-no-way", "No chain of converters leads from what the input holds to what the output format can hold."),
     ("E-plan-off-the-way", "The converter named with --method does not fit between the input and the output."),

@@ -69,9 +69,9 @@ pub(crate) fn open(
     let options = settings.reading(format, source.drop_non_finite)?;
     let context = ReadContext { limits, exec, siblings, options, ..ReadContext::named(name.as_str()) };
     let read = read(&bytes, format, &context).map_err(|error| Failure::from(error).about(name.as_ref()))?;
-    session.say_findings(&read.findings);
+    session.say_findings_about(&name, &read.findings);
     for loss in &read.losses {
-        session.say(format_args!("not read: {loss}"));
+        session.say_about(&name, format_args!("not read: {loss}"));
     }
     Ok(Input { name, format, read, bytes: bytes.len() as u64 })
 }

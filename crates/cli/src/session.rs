@@ -16,6 +16,8 @@ use crate::progress::Progress;
 pub(crate) struct Session<'a> {
     pub(crate) streams: &'a mut Streams,
     pub(crate) globals: &'a Globals,
+    /// Whether there is more than one input, so that messages must say which they are about.
+    pub(crate) several_inputs: bool,
     exec: Exec,
     pool: Option<rayon::ThreadPool>,
     progress: Progress,
@@ -44,7 +46,7 @@ impl<'a> Session<'a> {
             }
             None => {}
         }
-        Ok(Self { streams, globals, exec, pool, progress })
+        Ok(Self { streams, globals, several_inputs: false, exec, pool, progress })
     }
 
     /// How conversions run.
@@ -83,6 +85,19 @@ impl<'a> Session<'a> {
         let verbose = self.globals.verbose;
         for finding in findings.iter().filter(|finding| verbose || finding.severity == Severity::Warning) {
             self.say(finding);
+        }
+    }
+
+    /// Says something about an input, named where there is more than one.
+    pub(crate) fn say_about(&mut self, input: &str, words: impl Display) {
+        if self.several_inputs { self.say(format_args!("{input}: {words}")) } else { self.say(words) }
+    }
+
+    /// Says findings about an input, named where there is more than one.
+    pub(crate) fn say_findings_about(&mut self, input: &str, findings: &Findings) {
+        let verbose = self.globals.verbose;
+        for finding in findings.iter().filter(|finding| verbose || finding.severity == Severity::Warning) {
+            self.say_about(input, finding);
         }
     }
 

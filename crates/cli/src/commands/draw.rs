@@ -1,7 +1,7 @@
 //! Drawing shapes of any kind: what is not triangles is converted for the picture.
 
 use shapeloom_convert::{Job, Wish, convert_shape, plan};
-use shapeloom_core::{Camera, Category, Deviation, Options, Reservation};
+use shapeloom_core::{Aabb, Camera, Category, Deviation, Options, Reservation, Words};
 use shapeloom_judge::Simplices;
 use shapeloom_render::{Image, Picture, Scene, camera_from, scene_of_shape, sensible_camera, turntable};
 use shapeloom_shape::{Kind, Shape, UpAxis};
@@ -51,16 +51,18 @@ impl Stage {
         if drawable.parts.is_empty() {
             let kinds: Vec<&str> = shape.kinds().into_iter().map(Kind::name).collect();
             let found = if kinds.is_empty() { "nothing".to_owned() } else { kinds.join(", ") };
-            return Err(Failure::Own {
-                code: "E-picture-empty",
-                category: Category::Unsupported,
-                message: format!("picture: found {found}, expected something with a surface"),
-                advice: None,
-            });
+            return Err(empty(&found));
         }
         let exec = session.exec();
         let conversion = convert_shape(&drawable, job, &exec)?;
         let (scene, memory) = scene_of_shape(&conversion.shape, &exec)?;
+        let bounds = scene.bounds();
+        if bounds.is_empty() {
+            return Err(empty("no triangles"));
+        }
+        if largest(&bounds) >= TOO_LARGE {
+            return Err(wrong_size(&bounds));
+        }
         let up = shape.up.unwrap_or(UpAxis::Z);
         Ok(Self { scene, up, deviation: conversion.deviation, _memory: memory })
     }
@@ -83,18 +85,48 @@ impl Stage {
     /// The camera that a look asks for.
     pub(crate) fn camera(&self, look: &Look) -> Result<Camera, Failure> {
         let (bounds, up, aspect) = (self.scene.bounds(), self.up.vector(), look.aspect());
-        Ok(match look.view {
+        let camera = match look.view {
             Some((azimuth, elevation)) => {
-                camera_from(&bounds, up, azimuth.to_radians(), elevation.to_radians(), aspect)?
+                camera_from(&bounds, up, azimuth.to_radians(), elevation.to_radians(), aspect)
             }
-            None => sensible_camera(&bounds, up, aspect)?,
-        })
+            None => sensible_camera(&bounds, up, aspect),
+        };
+        camera.map_err(|_| wrong_size(&bounds))
     }
 
     /// The cameras of a turntable.
     pub(crate) fn turntable(&self, look: &Look, frames: u32) -> Result<Vec<Camera>, Failure> {
-        Ok(turntable(&self.scene.bounds(), self.up.vector(), look.aspect(), frames)?)
+        let bounds = self.scene.bounds();
+        turntable(&bounds, self.up.vector(), look.aspect(), frames).map_err(|_| wrong_size(&bounds))
     }
+}
+
+/// Why there is no picture of nothing.
+fn empty(found: &str) -> Failure {
+    Failure::Own {
+        code: "E-picture-empty",
+        category: Category::Unsupported,
+        message: format!("picture: found {found}, expected something with a surface"),
+        advice: None,
+    }
+}
+
+/// Coordinates from here on are not drawn, as their squares are hardly numbers.
+const TOO_LARGE: f64 = 1e150;
+
+/// Why there is no picture of what no view takes in. Angles and proportions are checked by then: it is the size.
+fn wrong_size(bounds: &Aabb) -> Failure {
+    let size = Words(largest(bounds));
+    Failure::Own {
+        code: "E-picture-size",
+        category: Category::Unsupported,
+        message: format!("picture: found coordinates up to {size}, expected a size between about 1e-150 and 1e150"),
+        advice: Some("scale the shape".into()),
+    }
+}
+
+fn largest(bounds: &Aabb) -> f64 {
+    bounds.max.abs().max(bounds.min.abs()).max_element()
 }
 
 /// A picture of a shape as it is.

@@ -9,7 +9,7 @@ use shapeloom_render::Picture;
 use shapeloom_shape::Kind;
 
 use super::coloring::ColorBy;
-use super::compare::Subject;
+use super::compare::{Subject, short};
 use super::convert::{absolute, check_strict, wish};
 use super::draw::{Look, Stage};
 use crate::account;
@@ -40,6 +40,7 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     paths.iter().try_for_each(|path| check_free(path, arguments.force))?;
     let settings = Settings::sort(&arguments.way.settings);
     settings.no_writing()?;
+    session.several_inputs = arguments.reference.is_some();
     let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     let wish = wish(&arguments.way, &[Kind::TriMesh])?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
@@ -49,6 +50,11 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     if session.globals.strict {
         check_strict(scene.deviation, tolerance)?;
     }
+    // Before the work of colouring: where there is no view there is no picture.
+    let cameras: Vec<Camera> = match arguments.turntable {
+        Some(frames) => scene.turntable(&look, frames)?,
+        None => vec![scene.camera(&look)?],
+    };
     let mut colors = Value::Null;
     if let Some(reference) = &arguments.reference {
         let plain = WayArguments { method: None, via: None, settings: Vec::new(), ..arguments.way.clone() };
@@ -56,14 +62,11 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
         let other = Subject::open(reference, &plain, &as_it_is, input.read.shape.up, session)?;
         session.stage("measuring");
         let (from, to) = scene.color_by_distance(&other.simplices, arguments.color_range, session)?;
-        session.say(format_args!("colours: distance to {} from {from} (dark) to {to} (light)", other.name));
+        let [dark, light] = [from, to].map(short);
+        session.say(format_args!("colours: distance to {} from {dark} (dark) to {light} (light)", other.name));
         let error = account::deviation(other.deviation.then(scene.deviation));
         colors = json!({ "by": "distance", "reference": other.name, "from": from, "to": to, "error": error });
     }
-    let cameras: Vec<Camera> = match arguments.turntable {
-        Some(frames) => scene.turntable(&look, frames)?,
-        None => vec![scene.camera(&look)?],
-    };
     session.stage("drawing");
     let mut staged = Vec::new();
     for (path, camera) in paths.iter().zip(&cameras) {

@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &CompareArguments, session: &mut Session<'_>) -> Re
     if let Some(folder) = &arguments.report {
         report::files(folder, &paths).iter().try_for_each(|path| check_free(path, arguments.force))?;
     }
+    session.several_inputs = true;
     let first = Subject::open(paths[0], &arguments.way, &arguments.source, None, session)?;
     let limit = limit.map(|limit| absolute_limit(limit, &first)).transpose()?;
     let mut subjects = vec![first];
@@ -54,7 +55,7 @@ pub(crate) fn run(arguments: &CompareArguments, session: &mut Session<'_>) -> Re
         comparisons.push(Comparison::measure(&subjects, other, &options, limit, &session.exec())?);
     }
     for subject in &subjects {
-        session.say_findings(&subject.findings);
+        session.say_findings_about(&subject.name, &subject.judged);
     }
     if let Some(folder) = &arguments.report {
         session.stage("drawing");
@@ -106,7 +107,7 @@ fn told(subjects: &[Subject], comparisons: &[Comparison], arguments: &CompareArg
 }
 
 /// A number with six digits.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     let [text] = apart([value]);
     text
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Aabb, Options};
+use shapeloom_core::{Aabb, Category, Options};
 use shapeloom_judge::{DirectedHausdorff, MeanDistance};
 use shapeloom_render::{Picture, scene_of_shape, sensible_camera, sequential_color};
 use shapeloom_shape::UpAxis;
@@ -56,20 +56,18 @@ pub(super) fn stage_all(
 ) -> Result<Vec<Output>, Failure> {
     // One view for all, so that pictures can be laid over each other.
     let bounds = subjects.iter().fold(Aabb::EMPTY, |bounds, subject| bounds.union(subject.simplices.bounds()));
-    let mut drawn = Vec::new();
-    for (index, subject) in subjects.iter().enumerate() {
-        drawn.extend(draw(shape_picture(index), subject, None, &bounds, session)?);
-    }
-    for comparison in comparisons {
-        // One scale of colours for both ways.
-        let hausdorff = &comparison.measured.hausdorff;
-        let range = (0.0, hausdorff.upper());
-        for (on, to) in [(0, comparison.other), (comparison.other, 0)] {
-            let name = distance_picture(comparison.other, on);
-            drawn.extend(draw(name, &subjects[on], Some((&subjects[to], range)), &bounds, session)?);
+    // What is measured is told, whether or not it can be drawn.
+    let (drawn, remark) = match draw_all(subjects, comparisons, &bounds, session) {
+        Ok(drawn) => (drawn, None),
+        Err(Failure::Narrow { error, .. }) if is_of_shapes(error.category()) => {
+            (Vec::new(), Some(format!("pictures are left out: shapes of this size cannot be drawn ({error})")))
         }
+        Err(error) => return Err(error),
+    };
+    if let Some(remark) = &remark {
+        session.say(remark);
     }
-    let page = page(subjects, comparisons, &drawn);
+    let page = page(subjects, comparisons, &drawn, remark.as_deref());
     let table = table(subjects, comparisons);
     let mut files: Vec<(String, &[u8])> =
         vec![(INDEX.to_owned(), page.as_bytes()), (TABLE.to_owned(), table.as_bytes())];
@@ -79,6 +77,33 @@ pub(super) fn stage_all(
         stage(&path, force, |out| out.write_all(bytes).map_err(|error| Failure::write(&path, &error)))
     };
     files.into_iter().map(one).collect()
+}
+
+/// Whether an error is about what is drawn, and not about memory, time or files.
+fn is_of_shapes(category: Category) -> bool {
+    matches!(category, Category::Usage | Category::Malformed | Category::Unsupported | Category::Failed)
+}
+
+fn draw_all(
+    subjects: &[Subject],
+    comparisons: &[Comparison],
+    bounds: &Aabb,
+    session: &Session<'_>,
+) -> Result<Vec<Drawn>, Failure> {
+    let mut drawn = Vec::new();
+    for (index, subject) in subjects.iter().enumerate() {
+        drawn.extend(draw(shape_picture(index), subject, None, bounds, session)?);
+    }
+    for comparison in comparisons {
+        // One scale of colours for both ways.
+        let hausdorff = &comparison.measured.hausdorff;
+        let range = (0.0, hausdorff.upper());
+        for (on, to) in [(0, comparison.other), (comparison.other, 0)] {
+            let name = distance_picture(comparison.other, on);
+            drawn.extend(draw(name, &subjects[on], Some((&subjects[to], range)), bounds, session)?);
+        }
+    }
+    Ok(drawn)
 }
 
 /// A picture of a shape, coloured by its distance to another if that is given; none where there is no surface.
@@ -92,15 +117,15 @@ fn draw(
     if !subject.has_surface() {
         return Ok(None);
     }
+    let up = subject.shape.up.unwrap_or(UpAxis::Z).vector();
+    let (width, height) = SIZE;
+    let camera = sensible_camera(bounds, up, f64::from(width) / f64::from(height))?;
     let exec = session.exec();
     let (mut scene, _memory) = scene_of_shape(&subject.surface(), &exec)?;
     let mut range = None;
     if let Some((other, wanted)) = distance {
         range = Some(color_by_distance(&mut scene, &other.simplices, Some(wanted), &exec)?);
     }
-    let up = subject.shape.up.unwrap_or(UpAxis::Z).vector();
-    let (width, height) = SIZE;
-    let camera = sensible_camera(bounds, up, f64::from(width) / f64::from(height))?;
     let picture = Picture {
         width,
         height,
@@ -154,11 +179,14 @@ img{width:100%;height:auto;border-radius:.3rem}.bar{height:.9rem;border-radius:.
 .above,.undecided{color:#a02020;font-weight:600}.within{color:#186030;font-weight:600}";
 
 /// The page, whole in itself: pictures are inside it too.
-fn page(subjects: &[Subject], comparisons: &[Comparison], drawn: &[Drawn]) -> String {
+fn page(subjects: &[Subject], comparisons: &[Comparison], drawn: &[Drawn], remark: Option<&str>) -> String {
     let mut html = String::from("<!doctype html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\">\n");
     let _ = writeln!(html, "<meta name=\"viewport\" content=\"width=device-width\"><title>Shapes compared</title>");
     let _ = writeln!(html, "<style>{STYLE}</style></head>\n<body>\n<h1>Shapes compared</h1>");
     shapes(&mut html, subjects, drawn);
+    if let Some(remark) = remark {
+        let _ = writeln!(html, "<p>{}</p>", escaped(remark));
+    }
     for comparison in comparisons {
         section(&mut html, subjects, comparison, drawn);
     }

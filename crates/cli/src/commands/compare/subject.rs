@@ -38,7 +38,9 @@ pub(crate) struct Subject {
     encloses: bool,
     /// What the judge says of the surfaces, vertices at one place taken as one.
     pub(crate) soundness: Option<Soundness>,
-    pub(crate) findings: Findings,
+    /// All findings, and those of them that reading did not tell.
+    findings: Findings,
+    pub(crate) judged: Findings,
     _memory: Reservation,
 }
 
@@ -94,10 +96,12 @@ impl Subject {
             encloses: false,
             soundness: None,
             findings: input.read.findings,
+            judged: Findings::default(),
             shape: conversion.shape,
             _memory: memory,
         };
         subject.measure(&exec)?;
+        subject.findings.extend(subject.judged.clone());
         Ok(subject)
     }
 
@@ -120,15 +124,15 @@ impl Subject {
         self.encloses = closed;
         // Why there are no measures at all; the rest is told below, as it matters here.
         for finding in judged.iter().filter(|finding| finding.code.starts_with("E-")) {
-            self.findings.push(finding.code, finding.severity, Place::Whole, finding.message.clone());
+            self.judged.push(finding.code, finding.severity, Place::Whole, finding.message.clone());
         }
         if !closed {
             let message = "the surface is not closed: it encloses no volume";
-            self.findings.push("W-compare-open", Severity::Note, Place::Whole, message);
+            self.judged.push("W-compare-open", Severity::Note, Place::Whole, message);
         }
         if soundness.area().is_none() || (closed && soundness.volume().is_none()) {
             let message = "the area or volume is beyond the numbers, or so small that it vanishes: it is left out";
-            self.findings.push("W-compare-size", Severity::Warning, Place::Whole, message);
+            self.judged.push("W-compare-size", Severity::Warning, Place::Whole, message);
         }
         Ok(())
     }
