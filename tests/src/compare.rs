@@ -316,7 +316,7 @@ fn pictures_are_coloured_by_distance() {
 fn sizes_that_cannot_be_drawn_are_measured() {
     let folder = Folder::new();
     let unit = folder.with("unit.off", &cube([0.0; 3], 1.0));
-    for (index, size) in [1e300, 1e153, 1e150, 1e-300].into_iter().enumerate() {
+    for (index, size) in [1e300, 1e153, 1e-300].into_iter().enumerate() {
         let wild = folder.with(&format!("wild{index}.off"), &cube([0.0; 3], size));
         let out = folder.path(&format!("report{index}"));
         // Beside the unit cube a tiny one is no trouble for a view.
