@@ -29,7 +29,7 @@ pub struct Verdict {
 
 /// What else the rules ask about.
 struct Details {
-    /// Slivers, by triangle.
+    /// Faces with a sliver.
     thin: Vec<u32>,
     /// Polygons that meet themselves.
     tangled: Vec<u32>,
@@ -125,7 +125,7 @@ impl Verdict {
         let loops = t.boundary.len();
         let border = t.boundary.edges().len();
         let mut open = format!(
-            "the surface is open: {border} edges have only one face, in {loops} {}",
+            "an edge has only one face, so the surface is open, in {loops} {}",
             if loops == 1 { "loop" } else { "loops" }
         );
         if !measures.coincident_vertices.is_empty() {
@@ -143,8 +143,8 @@ impl Verdict {
         let message = "two faces run along their edge in the same direction, so one of them is turned over";
         rule("W-check-orientation", message, turned.len(), &mut turned.iter().map(edge));
         let ring = &t.orientation_witness;
-        let message = format!("the surface is one-sided: a ring of {} faces turns the first one over", ring.len());
-        rule("W-check-orientable", &message, ring.len(), &mut ring.iter().map(face));
+        let message = "a face of a ring that turns the first one over: the surface is one-sided";
+        rule("W-check-orientable", message, ring.len(), &mut ring.iter().map(face));
         let inverted: Vec<&Shell> = shells.iter().filter(|shell| shell.is_inverted()).collect();
         let mut places = inverted.iter().map(|shell| face(&shell.first_face));
         let message =
@@ -195,7 +195,8 @@ impl Verdict {
     }
 
     /// Whether the mesh is the surface of one polyhedron: every edge has two faces, the faces at every vertex are one fan,
-    /// all faces are joined, no two vertices lie in one place, and no faces meet beyond shared sides and corners. Such a surface is orientable.
+    /// all faces are joined, no two vertices lie in one place, and no faces meet beyond shared sides and corners. Such a
+    /// surface is orientable.
     ///
     /// # Errors
     /// The first of these that is not so, with a witness.
