@@ -2,7 +2,8 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+    ConstrainedDelaunay, DelaunayTriangulation, GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh,
+    TriangulateHeightField, TriangulatePolygons, TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -15,6 +16,9 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
+        entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),
+        entry::<TriangulateRegion, Polyline>(Effect::Reported).only_by_name(),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]

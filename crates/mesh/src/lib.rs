@@ -2,11 +2,12 @@
 //!
 //! - [`TriMesh`] and [`PolyMesh`]: indexed faces with attribute columns on vertices, faces and wedges (the corners of
 //!   faces).
-//! - [`Polyline`], [`GeometricGraph`], [`HeightField`], [`PointCloud`].
+//! - [`Polyline`], [`GeometricGraph`], [`HeightField`], [`PointCloud`], [`PlanarRegion`].
 //! - [`Column`], [`ListColumn`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every
 //!   operation by one function, or their loss reported.
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
-//!   [`TriangulatePolygons`], [`TriangulateHeightField`].
+//!   [`TriangulatePolygons`], [`TriangulateHeightField`]; in a plane, on exact signs, [`DelaunayTriangulation`] of scattered
+//!   points, [`ConstrainedDelaunay`] of points and edges, [`TriangulateRegion`] of loops with holes.
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
@@ -22,6 +23,7 @@ mod height_field;
 mod list_column;
 mod mesh_attributes;
 mod normals;
+mod plane;
 mod point_cloud;
 mod poly_mesh;
 mod polyline;
@@ -42,6 +44,10 @@ pub use height_field::HeightField;
 pub use list_column::ListColumn;
 pub use mesh_attributes::MeshAttributes;
 pub use normals::{face_normals, newell_vector, triangle_normal};
+pub use plane::{
+    ConstrainedDelaunay, Crossings, DelaunayTriangulation, KeptTriangles, PlanarRegion, PlaneError, ProjectionPlane,
+    RegionMethod, TriangulateRegion,
+};
 pub use point_cloud::PointCloud;
 pub use poly_mesh::PolyMesh;
 pub use polyline::Polyline;
