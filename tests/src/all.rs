@@ -30,6 +30,7 @@ mod memory;
 mod mutations;
 mod oracles;
 mod peer_gltf;
+mod plane;
 mod properties;
 mod query_laws;
 mod regressions;

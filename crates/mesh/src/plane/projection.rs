@@ -126,9 +126,9 @@ fn least_direction(mut m: [[f64; 3]; 3]) -> DVec3 {
             for row in &mut m {
                 (row[p], row[q]) = turned(row[p], row[q]);
             }
-            for k in 0..3 {
-                (m[p][k], m[q][k]) = turned(m[p][k], m[q][k]);
-            }
+            let (upper, lower) = (m[p], m[q]);
+            let turned: [(f64, f64); 3] = std::array::from_fn(|k| turned(upper[k], lower[k]));
+            (m[p], m[q]) = (turned.map(|pair| pair.0), turned.map(|pair| pair.1));
             let (a, b) = (vectors[p], vectors[q]);
             (vectors[p], vectors[q]) = (a * cosine - b * sine, a * sine + b * cosine);
         }
