@@ -61,7 +61,7 @@ fn packages_use_lower_floors_only() {
 }
 
 #[test]
-fn only_core_and_spatial_name_glam_and_only_spatial_names_the_trees() {
+fn glam_trees_and_triangulations_are_named_where_they_belong() {
     for package in packages() {
         let name = package["name"].as_str().expect("a name");
         for (other, _) in dependencies(&package) {
@@ -70,6 +70,9 @@ fn only_core_and_spatial_name_glam_and_only_spatial_names_the_trees() {
             }
             if ["obvhs", "kiddo"].contains(&other) {
                 assert_eq!(name, "shapeloom-spatial", "{name} names {other}");
+            }
+            if ["spade", "earcut"].contains(&other) {
+                assert_eq!(name, "shapeloom-mesh", "{name} names {other}");
             }
         }
     }

@@ -212,6 +212,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-plane-height",
         "Several points lie over the same place of the plane at different heights; the first was kept. Another plane may tell them apart: plane=xz, plane=yz, plane=fit.",
     ),
+    (
+        "W-plane-near",
+        "Two edges cross so near to an end of one that rounding could put the crossing on either side of it; the other edge was led through that end, at a distance that the report names.",
+    ),
     ("W-plane-open", "A line that is not closed was closed by a straight side to bound a region."),
     ("W-plane-outside", "Points that are no corner of a triangle that is kept were left out."),
     ("W-plane-overlap", "An edge runs over another one; the part that they share counts once."),

@@ -25,6 +25,12 @@ pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
     sign(robust::orient2d(flat(a), flat(b), flat(c)))
 }
 
+/// Twice the signed area of the triangle `a`, `b`, `c`, rounded: its sign is that of [`orient2d`], exactly, and where the
+/// terms nearly cancel more of its bits are right than of a plain difference of products.
+pub fn doubled_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    robust::orient2d(flat(a), flat(b), flat(c))
+}
+
 /// On which side of the plane through `a`, `b`, `c` the point `d` lies: `Greater` on the side of the normal
 /// `(b - a) × (c - a)`, `Less` on the other, `Equal` in the plane.
 pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Ordering {
@@ -72,6 +78,9 @@ mod tests {
                 let (bx, cx) = (12i128 << 53, 24i128 << 53);
                 let exact = (ax - cx) * (bx - cx) - (ay - cx) * (bx - cx);
                 assert_eq!(orient2d(a, b, c), exact.cmp(&0), "{i} {j}");
+                // In units of 2^-106, and to the last bits where a plain difference has none.
+                let found = doubled_area(a, b, c) * 2f64.powi(106);
+                assert!((found - exact as f64).abs() <= 1e-9 * exact.unsigned_abs() as f64, "{i} {j}");
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Edges that a triangulation must keep.
 
 use shapeloom_core::glam::DVec2;
+use shapeloom_core::predicates::doubled_area;
 use shapeloom_core::{ConvertError, Exec, Reservation};
 use spade::Triangulation as _;
 use spade::handles::FixedVertexHandle;
@@ -38,6 +39,8 @@ pub(crate) struct Constraints {
     pub(crate) overlapping: Vec<u32>,
     /// Source edges between points at one place, in order.
     pub(crate) without_length: Vec<u32>,
+    /// Source edges that were led through a vertex which they pass within rounding: each with the vertex.
+    pub(crate) led_through: Vec<Crossing>,
     /// Source edges that another point lies on, in order.
     pub(crate) through_points: Vec<u32>,
     _memory: Vec<Reservation>,
@@ -58,8 +61,11 @@ const BYTES_A_PIECE: usize = 1024;
 /// Makes edges between points constraints. Where one passes through a vertex it is split there; where two cross, both
 /// are split at a new vertex in the crossing, rounded to the nearest numbers.
 ///
-/// A piece that was rounded may cross another one by so little: it is split again, until nothing crosses. Each step takes
-/// memory from the budget, so that this ends in any case.
+/// A piece that was rounded may cross another one by so little: it is split again, until nothing crosses. Where pieces cross
+/// so near to an end of one that rounding could put the crossing on either side of it, no vertex is made: the other
+/// piece is led through that end. So new vertices come from crossings that are more than rounding, of which rounding makes no
+/// more, and pieces led through vertices that are there become shorter each time: this ends. Each step takes memory from
+/// the budget all the same.
 pub(crate) fn constrain(
     triangulation: &mut Triangulation,
     edges: &[[u32; 2]],
@@ -79,7 +85,7 @@ pub(crate) fn constrain(
         }
         tasks.push(Task { ends, piece: Piece { source, copies: 1 } });
         while let Some(task) = tasks.pop() {
-            if done.pieces.len() + done.crossings.len() >= BATCH * done._memory.len() {
+            if done.pieces.len() + done.crossings.len() + done.led_through.len() >= BATCH * done._memory.len() {
                 exec.check()?;
                 done._memory.push(exec.reserve_elements(BATCH as u64, BYTES_A_PIECE)?);
             }
@@ -119,9 +125,25 @@ fn put(
         }
         return Ok(());
     };
-    let (other, others_ends) = release(cdt, conflict, done);
+    let others_ends = cdt.undirected_edge(conflict).vertices().map(|vertex| vertex.fix());
     let [a, b] = ends.map(|end| position(cdt, end));
     let [u, v] = others_ends.map(|end| position(cdt, end));
+    let through = |through: FixedVertexHandle, [from, to]: [FixedVertexHandle; 2], piece: Piece| {
+        [[from, through], [through, to]].map(|ends| Task { ends, piece })
+    };
+    if let Some(near) = others_ends.into_iter().find(|&end| passes_within_rounding([a, b], position(cdt, end), [u, v]))
+    {
+        done.led_through.push(Crossing { edges: [piece.source; 2], vertex: near.index() as u32 });
+        tasks.extend(through(near, ends, piece).into_iter().rev());
+        return Ok(());
+    }
+    let (other, _) = release(cdt, conflict, done);
+    if let Some(near) = ends.into_iter().find(|&end| passes_within_rounding([u, v], position(cdt, end), [a, b])) {
+        done.led_through.push(Crossing { edges: [other.source; 2], vertex: near.index() as u32 });
+        tasks.push(Task { ends, piece });
+        tasks.extend(through(near, others_ends, other));
+        return Ok(());
+    }
     let at = flushed(meeting_point([a, b], [u, v]));
     // A third edge on which the point comes to lie exactly is split there too.
     let third = match cdt.locate_with_hint(spade::Point2::new(at.x, at.y), others_ends[0]) {
@@ -140,6 +162,19 @@ fn put(
     tasks.extend(parts.into_iter().rev());
     Ok(())
 }
+
+/// Whether a segment passes between its ends an end of another one that it crosses, so closely that rounding the crossing
+/// could put it on either side.
+fn passes_within_rounding([p, q]: [DVec2; 2], end: DVec2, other: [DVec2; 2]) -> bool {
+    let is_shorter = p.distance_squared(q) <= other[0].distance_squared(other[1]);
+    let [from, to] = if is_shorter { [p, q] } else { other };
+    let off = doubled_area(p, q, end).abs() / p.distance(q);
+    let is_between = (end - p).dot(q - p) > 0.0 && (end - q).dot(p - q) > 0.0;
+    is_between && off <= from.abs().max(to.abs()).max_element() * ROUNDING
+}
+
+/// A crossing is rounded by a few units in the last place of the coordinates of the shorter segment, 2^-53 of them; this is 64.
+const ROUNDING: f64 = 1.0 / (1u64 << 47) as f64;
 
 /// Writes a piece on a constraint edge, on top of what is there.
 fn claim(cdt: &mut Cdt, edge: spade::handles::FixedUndirectedEdgeHandle, piece: Piece, done: &mut Constraints) {
@@ -176,20 +211,17 @@ fn release(
 }
 
 /// Where two segments that cross meet, rounded, within the boxes of both.
-fn meeting_point([a, b]: [DVec2; 2], [u, v]: [DVec2; 2]) -> DVec2 {
-    let along = v - u;
-    let (from, to) = (along.perp_dot(a - u), along.perp_dot(b - u));
-    let part = from / (from - to);
+fn meeting_point(one: [DVec2; 2], other: [DVec2; 2]) -> DVec2 {
+    // Along the shorter one, beside which the coordinates of the longer may be too large to tell places apart.
+    let is_shorter = one[0].distance_squared(one[1]) <= other[0].distance_squared(other[1]);
+    let ([a, b], [u, v]) = if is_shorter { (one, other) } else { (other, one) };
+    let (from, to) = (doubled_area(u, v, a), doubled_area(u, v, b));
+    // From the nearer end, where less is rounded.
+    let met = match from.abs() <= to.abs() {
+        true => a + (b - a) * (from / (from - to)),
+        false => b + (a - b) * (to / (to - from)),
+    };
     let low = a.min(b).max(u.min(v));
     let high = a.max(b).min(u.max(v));
-    if !part.is_finite() {
-        // They run along each other so closely that rounding hides which crosses where: an end of one that the other
-        // passes is as good as any point.
-        let between = |p: DVec2, s: DVec2, t: DVec2| (p - s).dot(t - s) >= 0.0 && (p - t).dot(s - t) >= 0.0;
-        return [u, v].into_iter().find(|&p| between(p, a, b)).unwrap_or(if between(a, u, v) { a } else { b });
-    }
-    // From the nearer end, where less is rounded.
-    let part = part.clamp(0.0, 1.0);
-    let met = if part <= 0.5 { a + (b - a) * part } else { b + (a - b) * (to / (to - from)).clamp(0.0, 1.0) };
     met.max(low).min(high)
 }

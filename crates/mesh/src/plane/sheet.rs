@@ -163,6 +163,16 @@ impl Sheet<'_> {
         );
         report.figure(format!("{word}s"), self.edges.len() as f64);
         report.figure("constraint_edges", triangulation.cdt.num_constraints() as f64);
+        let ends = |edge: u32| self.edges[edge as usize];
+        let led = &constraints.led_through;
+        if !led.is_empty() {
+            let places = led.iter().map(|near| Place::element(word, u64::from(near.edges[0])));
+            let message =
+                format!("{word}s that cross another one within rounding of its end were led through that end");
+            report.findings.push_all("W-plane-near", Severity::Note, message, led.len() as u64, places);
+            let off = led.iter().map(|near| mixtures::off_edge(triangulation, ends(near.edges[0]), near.vertex));
+            report.figure("led_through_rounding", triangulation.scale.length(off.fold(0.0, f64::max)));
+        }
         let crossings = &constraints.crossings;
         if crossings.is_empty() {
             return;
@@ -173,7 +183,7 @@ impl Sheet<'_> {
         report.findings.push_all("W-plane-crossing", Severity::Warning, message, crossings.len() as u64, places);
         let (mut off, mut gap) = (0.0f64, 0.0f64);
         for crossing in crossings {
-            let ends = crossing.edges.map(|edge| self.edges[edge as usize]);
+            let ends = crossing.edges.map(ends);
             off = ends
                 .map(|ends| mixtures::off_edge(triangulation, ends, crossing.vertex))
                 .into_iter()

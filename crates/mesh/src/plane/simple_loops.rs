@@ -40,10 +40,7 @@ pub(crate) fn are_simple(corners: &[DVec2], loops: &[Range<usize>], exec: &Exec)
         let side_of = |side: &[u32; 2]| orient2d(at(side[0]), at(side[1]), point);
         let first = active.partition_point(|side| side_of(side) == Ordering::Greater);
         let last = first + active[first..].partition_point(|side| side_of(side) == Ordering::Equal);
-        // Sides through the corner end there.
-        if active[first..last].iter().any(|side| side[1] != corner) {
-            return Ok(false);
-        }
+        // Its own two sides go through the corner, ending or starting there, and no others.
         let ends = [before[corner as usize], after[corner as usize]];
         let mut starting: Vec<[u32; 2]> =
             ends.into_iter().filter(|&end| order(point, at(end)).is_lt()).map(|end| [corner, end]).collect();

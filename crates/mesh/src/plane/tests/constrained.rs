@@ -170,6 +170,39 @@ fn crossings_anywhere_leave_a_sound_triangulation() {
     }
 }
 
+/// Dozens of edges that lie within a few units in the last place of one line, or reach from there to the smallest numbers, cross
+/// and overlap: every crossing that is rounded would make others, without end. All stay within rounding of where they were.
+#[test]
+fn bundles_of_edges_within_rounding_come_to_an_end() {
+    let mut dice = Dice(6);
+    for round in 0..120u32 {
+        let point = |dice: &mut Dice| match round % 4 {
+            0 => {
+                let x = dice.unit();
+                DVec2::new(x, x / 3.0 + dice.next(5) as f64 * 2f64.powi(-53))
+            }
+            1 => {
+                let x = dice.next(30) as f64 / 7.0;
+                DVec2::new(x, x / 3.0 + dice.next(3) as f64 * 2f64.powi(-52))
+            }
+            2 => {
+                let mut small = || dice.unit() * 10f64.powi(-(dice.next(80) as i32));
+                DVec2::new(small(), small())
+            }
+            _ => DVec2::splat(1e6) + DVec2::new(dice.next(4) as f64, dice.next(9) as f64) * 2f64.powi(-33),
+        };
+        let points: Vec<DVec2> = (0..40).map(|_| point(&mut dice)).collect();
+        let given: Vec<[u32; 2]> = (0..60).map(|_| [dice.next(40) as u32, dice.next(40) as u32]).collect();
+        let converted = ConstrainedDelaunay::new().convert(&graph(&points, &given)).unwrap();
+        is_sound(&converted.value);
+        let reach = if round % 4 == 3 { 1e6 } else { 5.0 };
+        for name in ["crossing_rounding", "led_through_rounding"] {
+            let off = converted.report.find(name).unwrap_or(0.0);
+            assert!(off <= reach * 2f64.powi(-44), "{round} {name}: {off}");
+        }
+    }
+}
+
 #[test]
 fn edges_that_touch_overlap_or_are_nothing_are_told() {
     let points = [(0.0, 0.0), (8.0, 0.0), (4.0, 0.0), (2.0, 0.0), (0.0, 5.0), (8.0, 5.0), (0.0, 0.0)].map(DVec2::from);

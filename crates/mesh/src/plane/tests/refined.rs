@@ -37,7 +37,9 @@ fn plate() -> PlanarRegion {
 #[test]
 fn the_angle_wanted_is_reached_and_the_area_stays() {
     let plain = TriangulateRegion::new().convert(&plate()).unwrap().value;
-    for (angle, area) in [(20.0, 0.0), (28.0, 0.0), (30.0, 0.05), (0.0, 0.01), (33.0, 0.0)] {
+    for (angle, area, most) in
+        [(20.0, 0.0, 107), (28.0, 0.0, 180), (30.0, 0.05, 846), (0.0, 0.01, 4100), (33.0, 0.0, 362)]
+    {
         let refine = TriangulateRegion { angle, max_area: area, ..TriangulateRegion::new() };
         let converted = refine.convert(&plate()).unwrap();
         let mesh = &converted.value;
@@ -55,7 +57,8 @@ fn the_angle_wanted_is_reached_and_the_area_stays() {
         // A region with two holes: V - E + F = -1; so 2 E = 3 F + boundary.
         assert_eq!(2 * (mesh.positions().len() + 1), mesh.triangles().len() + boundary, "{angle}");
         assert_eq!(mesh.positions()[..plain.positions().len()], *plain.positions());
-        assert!(added < 4000, "{angle}: {added}");
+        // A fifth more than when this was written: needless vertices would be noticed.
+        assert!(added <= most, "{angle}: {added}");
     }
 }
 
