@@ -7,9 +7,11 @@
 //!   operation by one function, or their loss reported.
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
 //!   [`TriangulatePolygons`], [`TriangulateHeightField`].
+//! - [`structures`]: ways to store connectivity behind one interface, and converters between them.
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
+pub mod structures;
 
 mod attributes;
 mod carry;
