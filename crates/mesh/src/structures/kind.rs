@@ -4,7 +4,7 @@ use std::fmt;
 
 use shapeloom_core::Exec;
 
-use super::{Incidence, IndexedPolygons, IndexedTriangles, StructureError};
+use super::{CornerTable, Incidence, IndexedPolygons, IndexedTriangles, StructureError, TriangleHalfEdges};
 
 /// A way to store connectivity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -13,17 +13,24 @@ pub enum StructureKind {
     IndexedTriangles,
     /// [`IndexedPolygons`].
     IndexedPolygons,
+    /// [`TriangleHalfEdges`].
+    TriangleHalfEdges,
+    /// [`CornerTable`].
+    CornerTable,
 }
 
 impl StructureKind {
     /// Every structure, the plainest first.
-    pub const ALL: [Self; 2] = [Self::IndexedTriangles, Self::IndexedPolygons];
+    pub const ALL: [Self; 4] =
+        [Self::IndexedTriangles, Self::IndexedPolygons, Self::TriangleHalfEdges, Self::CornerTable];
 
     /// What the structure is called, in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::IndexedTriangles => "indexed triangles",
             Self::IndexedPolygons => "indexed polygons",
+            Self::TriangleHalfEdges => "half-edges (triangles)",
+            Self::CornerTable => "corner table",
         }
     }
 
@@ -34,6 +41,10 @@ impl StructureKind {
             Self::IndexedTriangles => 6.0,
             // Three corners and a start for each of two faces.
             Self::IndexedPolygons => 8.0,
+            // The origin and the twin of six half-edges, and a half-edge of the vertex.
+            Self::TriangleHalfEdges => 13.0,
+            // The vertex and the opposite of six corners, and a corner of the vertex.
+            Self::CornerTable => 13.0,
         }
     }
 
@@ -46,6 +57,13 @@ impl StructureKind {
         Ok(match self {
             Self::IndexedTriangles => Box::new(IndexedTriangles::try_from(faces)?),
             Self::IndexedPolygons => Box::new(faces.clone()),
+            Self::TriangleHalfEdges => {
+                Box::new(TriangleHalfEdges::try_build(IndexedTriangles::try_from(faces)?, exec)?)
+            }
+            Self::CornerTable => {
+                let triangles = IndexedTriangles::try_from(faces)?;
+                Box::new(CornerTable::from(TriangleHalfEdges::try_build(triangles, exec)?))
+            }
         })
     }
 }
