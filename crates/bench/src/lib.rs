@@ -5,6 +5,7 @@
 
 mod closest;
 mod files;
+mod half_edges;
 mod hausdorff;
 mod measure;
 mod queries;
@@ -74,6 +75,10 @@ pub enum Task {
     Rays,
     /// Closest points of blob_1m.ply to qry_surface.f32 and every tenth of qry_box.f32 (else to points of a formula).
     Closest,
+    /// Half-edges of blob_1m.ply, from its triangles.
+    Halfedge,
+    /// Sweeps over the one-rings of the same mesh: a sum over neighbours, and the vertices' normals.
+    Onering,
 }
 
 impl Task {
@@ -115,6 +120,13 @@ impl Task {
                     _ => names(&format!("j.closest_{points}"), &[".signed_tall", ".signed"]),
                 }
             }
+            Self::Halfedge => {
+                vec!["p.openmesh.build_from_indices".into(), "p.adjacency_1m.halfedge_build_from_numpy".into()]
+            }
+            Self::Onering => match last([':', ' ']) {
+                "sum" => vec!["p.openmesh.one_ring_sum".into()],
+                _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
+            },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff => Vec::new(),
         }
     }
@@ -159,6 +171,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Hausdorff => hausdorff::run(&setting),
         Task::Rays => rays::run(&setting),
         Task::Closest => closest::run(&setting),
+        Task::Halfedge => half_edges::build(&setting).map(|outcome| vec![outcome]),
+        Task::Onering => half_edges::sweep(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);
