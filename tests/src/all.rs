@@ -29,6 +29,7 @@ mod malformed_stl;
 mod memory;
 mod mutations;
 mod oracles;
+mod orientation;
 mod peer_gltf;
 mod properties;
 mod query_laws;

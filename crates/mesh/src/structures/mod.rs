@@ -11,15 +11,18 @@ mod incidence;
 mod indexed_polygons;
 mod indexed_triangles;
 mod kind;
+mod orientation;
 mod scan;
 mod sides;
 mod triangle_half_edges;
 
 pub use corner_table::CornerTable;
 pub use error::StructureError;
+pub(crate) use face_list::FaceList;
 pub use ids::{CornerId, EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use incidence::{Answered, Cost, Incidence, Query, Unanswered, Visitor};
 pub use indexed_polygons::IndexedPolygons;
 pub use indexed_triangles::IndexedTriangles;
 pub use kind::StructureKind;
+pub(crate) use orientation::Orientation;
 pub use triangle_half_edges::{OneRing, TriangleHalfEdges};
