@@ -118,6 +118,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "At a vertex the faces form more than one fan, as where two cones meet in their apex: turning about the vertex from face to face does not pass all of them. Double the vertex, or use a structure that holds any faces.",
     ),
     (
+        "E-structures-mix",
+        "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative. Example: --mix VV=1e6,VF=2e5,updates=100.",
+    ),
+    (
         "E-tessellation-rounding",
         "The tolerance is smaller than the rounding of coordinates at this size; no mesh meets it.",
     ),
