@@ -22,9 +22,9 @@ fn every_task_prints_lines_of_json() {
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
         let lines = String::from_utf8(out).expect("UTF-8");
         let expected = match task {
-            Task::Tessellate | Task::Topology | Task::SelfIntersection => 1,
+            Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge => 1,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
-            Task::Closest => 2,
+            Task::Closest | Task::Onering => 2,
             Task::Read | Task::Write | Task::Rays => 5,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use shapeloom::convert::{Converter, Effect, Request, registry};
 use shapeloom::core::glam::DVec3;
 use shapeloom::core::{Category, Deviation, Exec, OptionKind, Stop, Threads};
-use shapeloom::mesh::{Column, Domain, MeshAttributes, TriMesh};
+use shapeloom::mesh::{Column, Domain, MeshAttributes, PolyMesh};
 use shapeloom::shape::Geometry;
 
 use crate::oracles::{self, Pieces};
@@ -109,12 +109,13 @@ fn tagged_places(source: &Geometry, domain: Domain, tag: usize) -> Vec<DVec3> {
 }
 
 /// Checks that every tag in a column of the result lies where the tagged element of the source lies.
-fn check_tags(source: &Geometry, result: &TriMesh, before: Domain, after: Domain, column: &Column) -> bool {
-    let corners = result.triangles().as_flattened();
-    corners.iter().enumerate().all(|(wedge, &vertex)| {
+fn check_tags(source: &Geometry, result: &PolyMesh, before: Domain, after: Domain, column: &Column) -> bool {
+    let mut faces = (0..result.face_count()).flat_map(|face| result.wedges(face).map(move |wedge| (face, wedge)));
+    faces.all(|(face, wedge)| {
+        let vertex = result.wedge_vertices()[wedge];
         let element = match after {
             Domain::Vertex => vertex as usize,
-            Domain::Face => wedge / 3,
+            Domain::Face => face,
             Domain::Wedge => wedge,
         };
         let tag = column.number(element, 0) as usize;
@@ -128,7 +129,11 @@ fn tagged_attributes_arrive_where_they_belong_or_are_listed_as_lost() {
     for (converter, name, source) in cases() {
         let Some(before) = attributes(&source) else { continue };
         let converted = converter.run(&source, &request(&source), &Exec::default()).expect("it ran before");
-        let Geometry::TriMesh(result) = &converted.value else { panic!("all results with attributes are triangles") };
+        let result: &PolyMesh = &match &converted.value {
+            Geometry::TriMesh(mesh) => mesh.clone().into(),
+            Geometry::PolyMesh(mesh) => mesh.clone(),
+            other => panic!("a {} has no tags", other.kind()),
+        };
         for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
             let Some(tags) = before.of(domain).get("tag") else { continue };
             // A vertex attribute may move to the corners; each kind of element has a tag of the same name, so the

@@ -34,7 +34,7 @@ pub(crate) fn sweep(setting: &Setting) -> Result<Vec<Outcome>, String> {
     let work = || parallel::sum(&exec, positions.len(), around).map_err(|stop| stop.to_string());
     let (total, times) = measure::fastest(setting.runs, work)?;
     let mut figures = Map::new();
-    figures.insert("vertices".into(), json!(positions.len()));
+    figures.insert("triangles".into(), json!(mesh.triangles().len()));
     figures.insert("sum".into(), json!(total));
     let sum = Outcome { input: format!("{input}: sum"), times, figures };
 
@@ -66,7 +66,7 @@ pub(crate) fn sweep(setting: &Setting) -> Result<Vec<Outcome>, String> {
     };
     let (normals, times) = measure::fastest(setting.runs, work)?;
     let mut figures = Map::new();
-    figures.insert("vertices".into(), json!(positions.len()));
+    figures.insert("triangles".into(), json!(mesh.triangles().len()));
     figures.insert("outward".into(), json!(outward(&normals, positions)));
     Ok(vec![sum, Outcome { input: format!("{input}: normals"), times, figures }])
 }

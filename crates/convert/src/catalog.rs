@@ -2,7 +2,7 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+    HeightField, OrientFaces, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -16,6 +16,8 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
+        entry::<OrientFaces, TriMesh>(Effect::Exact),
+        entry::<OrientFaces, PolyMesh>(Effect::Exact),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]
 }

@@ -6,7 +6,7 @@
 //! - [`Column`], [`ListColumn`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every
 //!   operation by one function, or their loss reported.
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
-//!   [`TriangulatePolygons`], [`TriangulateHeightField`].
+//!   [`TriangulatePolygons`], [`OrientFaces`], [`TriangulateHeightField`].
 //! - [`structures`]: ways to store connectivity behind one interface, and converters between them.
 //! - [`primitives`]: ready shapes with closed-form facts.
 
@@ -24,6 +24,7 @@ mod height_field;
 mod list_column;
 mod mesh_attributes;
 mod normals;
+mod orient_faces;
 mod point_cloud;
 mod poly_mesh;
 mod polyline;
@@ -44,6 +45,7 @@ pub use height_field::HeightField;
 pub use list_column::ListColumn;
 pub use mesh_attributes::MeshAttributes;
 pub use normals::{face_normals, newell_vector, triangle_normal};
+pub use orient_faces::{OrientFaces, Outside};
 pub use point_cloud::PointCloud;
 pub use poly_mesh::PolyMesh;
 pub use polyline::Polyline;
