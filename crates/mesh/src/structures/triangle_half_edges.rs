@@ -131,7 +131,7 @@ impl TriangleHalfEdges {
 
     /// The half-edge before one around its triangle.
     pub fn previous(&self, half_edge: HalfEdgeId) -> HalfEdgeId {
-        HalfEdgeId(if half_edge.0 % 3 == 0 { half_edge.0 + 2 } else { half_edge.0 - 1 })
+        HalfEdgeId(if half_edge.0.is_multiple_of(3) { half_edge.0 + 2 } else { half_edge.0 - 1 })
     }
 
     /// The triangle to the left of a half-edge, to which it belongs.
