@@ -121,7 +121,11 @@ impl Task {
                 }
             }
             Self::Halfedge => {
-                vec!["p.openmesh.build_from_indices".into(), "p.adjacency_1m.halfedge_build_from_numpy".into()]
+                vec![
+                    "p.openmesh.build_from_indices".into(),
+                    "p.adjacency_1m.halfedge_build_from_numpy".into(),
+                    "p.adjacency_1m.halfedge_build".into(),
+                ]
             }
             Self::Onering => match last([':', ' ']) {
                 "sum" => vec!["p.openmesh.one_ring_sum".into()],

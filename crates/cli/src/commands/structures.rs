@@ -117,7 +117,11 @@ fn told(
         text,
         "large closed triangle mesh; coordinates of three words more); mean time of a query, * by looking at all"
     );
-    let _ = write!(text, "\n{:<24}{:>8}{:>8}{:>8}{:>8}{:>9}", "", "B/vert", "B/face", "words", "theory", "build");
+    let _ = write!(
+        text,
+        "\n{:<24}{:>8}{:>8}{:>8}{:>8}{:>6}{:>9}",
+        "", "B/vert", "B/face", "words", "layout", "book", "build"
+    );
     for query in Query::ALL {
         let _ = write!(text, "{:>9}", query.name());
     }
@@ -126,7 +130,9 @@ fn told(
         let Ok(costs) = row else { continue };
         let per = |count: usize| costs.bytes as f64 / count.max(1) as f64;
         let _ = write!(text, "{:<24}{:>8.1}{:>8.1}", kind.name(), per(vertices), per(count));
-        let _ = write!(text, "{:>8.2}{:>8.1}{:>9}", per(vertices) / 4.0, kind.words_per_vertex(), seconds(costs.build));
+        let book = kind.textbook_words_per_vertex().map_or_else(String::new, |words| words.to_string());
+        let _ = write!(text, "{:>8.2}{:>8.1}{book:>6}", per(vertices) / 4.0, kind.words_per_vertex());
+        let _ = write!(text, "{:>9}", seconds(costs.build));
         for (cost, time) in costs.queries {
             let cell = match (cost, time) {
                 (Cost::Unanswered, _) => "-".to_owned(),
@@ -163,6 +169,7 @@ fn told_as_json(name: &str, faces: &IndexedPolygons, rows: &[Row], workload: &Wo
         let mut object = Map::new();
         object.insert("name".into(), json!(kind.name()));
         object.insert("theory_words_per_vertex".into(), json!(kind.words_per_vertex()));
+        object.insert("textbook_words_per_vertex".into(), json!(kind.textbook_words_per_vertex()));
         match row {
             Ok(costs) => {
                 let per = |count: usize| costs.bytes as f64 / count.max(1) as f64;

@@ -99,6 +99,20 @@ impl StructureKind {
         }
     }
 
+    /// What textbooks count for the same mesh, coordinates of three words included, where they do: they leave out where lists
+    /// start, and the edge with which a face begins.
+    pub fn textbook_words_per_vertex(self) -> Option<f64> {
+        match self {
+            // Nine coordinates of two triangles.
+            Self::TriangleSoup => Some(18.0),
+            Self::IndexedTriangles => Some(3.0 + 6.0),
+            Self::FaceVertex => Some(9.0 + 6.0),
+            // A vertex with an edge, eight words of three edges, and an edge of two faces.
+            Self::WingedEdge => Some(3.0 + 1.0 + 24.0 + 2.0),
+            _ => None,
+        }
+    }
+
     /// The structure of a mesh.
     ///
     /// # Errors
