@@ -38,6 +38,7 @@ mod round_trips;
 mod same_bits;
 mod self_intersection;
 mod shapes;
+mod structures;
 mod structures_command;
 mod support;
 mod topology;

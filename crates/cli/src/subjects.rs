@@ -5,8 +5,7 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 use shapeloom_convert::{Job, convert_shape, plan};
 use shapeloom_core::{Category, Convert, Exec};
-use shapeloom_judge::Measures;
-use shapeloom_mesh::{MeshOrigins, Origins, PolyMesh, TriMesh, Weld, carry};
+use shapeloom_mesh::{PolyMesh, TriMesh, Weld};
 use shapeloom_shape::{Geometry, Kind, Shape};
 
 use crate::failure::Failure;
@@ -122,18 +121,8 @@ fn weld(subject: &mut Subject, exec: &Exec) -> Result<usize, Failure> {
             (mesh.positions().len() - welded.positions().len(), welded.into())
         }
         Geometry::PolyMesh(mesh) => {
-            let _memory = exec.reserve(mesh.memory_bytes() as u64)?;
-            let doubled = Measures::of(mesh, exec)?.coincident_vertices;
-            let mut number: Vec<u32> = (0..mesh.positions().len() as u32).collect();
-            doubled.iter().for_each(|&[first, later]| number[later as usize] = first);
-            let kept: Vec<u32> = (0..number.len() as u32).filter(|&vertex| number[vertex as usize] == vertex).collect();
-            let place = |vertex: u32| kept.partition_point(|&kept| kept < number[vertex as usize]) as u32;
-            let corners = mesh.wedge_vertices().iter().map(|&vertex| place(vertex)).collect();
-            let positions = kept.iter().map(|&vertex| mesh.positions()[vertex as usize]).collect();
-            let origins = MeshOrigins { vertex: Origins::Copies(kept), face: Origins::Same, wedge: Origins::Same };
-            let (attributes, _) = carry(mesh.attributes(), &origins);
-            let welded = PolyMesh::with_attributes(positions, mesh.face_starts().to_vec(), corners, attributes)?;
-            (doubled.len(), welded.into())
+            let welded = Weld::new().convert_with(mesh, exec)?.value;
+            (mesh.positions().len() - welded.positions().len(), welded.into())
         }
         _ => return Ok(0),
     };

@@ -16,6 +16,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
+        entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),
         entry::<OrientFaces, PolyMesh>(Effect::Exact),
         entry::<VertexNormals, TriMesh>(Effect::Exact),

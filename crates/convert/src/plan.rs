@@ -72,7 +72,6 @@ pub fn plan(from: Kind, wish: &Wish) -> Result<Plan, PlanError> {
 
 /// The converter of that name that is nearest to a kind, and the steps that lead to it; the first of that name if none can
 /// be reached. One name may serve several kinds.
-#[expect(clippy::type_complexity, reason = "a way, or the converter that no way leads to")]
 fn reach(
     from: Kind,
     name: &str,

@@ -135,8 +135,8 @@ impl ExtendedEdgeList {
                 break;
             }
         }
-        let different = by_start.windows(2).all(|pair| pair[0].0 != pair[1].0);
-        (side == first && chain.len() == sides.len() && different).then_some(chain)
+        // Of two sides that start at one vertex only one would ever be found, so that the chain would miss the other.
+        (side == first && chain.len() == sides.len()).then_some(chain)
     }
 
     /// The sides of a face in order, found among all.

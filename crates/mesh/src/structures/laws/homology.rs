@@ -7,12 +7,12 @@ use crate::structures::{IncidenceMatrices, IndexedPolygons, SignedMatrix};
 
 /// The rank modulo a prime, by elimination in a full matrix.
 fn rank(matrix: &SignedMatrix, prime: i64) -> usize {
-    let mut rows = vec![vec![0i64; matrix.column_count()]; matrix.row_count()];
-    for column in 0..matrix.column_count() {
-        for (row, sign) in matrix.column(column as u32) {
-            rows[row as usize][column] += i64::from(sign);
-        }
-    }
+    let full = |row: u32| {
+        let mut numbers = vec![0i64; matrix.column_count()];
+        matrix.row(row).for_each(|(column, sign)| numbers[column as usize] += i64::from(sign));
+        numbers
+    };
+    let mut rows: Vec<Vec<i64>> = (0..matrix.row_count() as u32).map(full).collect();
     let mut rank = 0;
     for column in 0..matrix.column_count() {
         let Some(pivot) = (rank..rows.len()).find(|&row| rows[row][column].rem_euclid(prime) != 0) else { continue };
