@@ -4,7 +4,7 @@ use std::fmt;
 
 use shapeloom_core::Exec;
 
-use super::{Incidence, IndexedPolygons, IndexedTriangles, StructureError};
+use super::{Cost, HalfEdgeMesh, Incidence, IndexedPolygons, IndexedTriangles, LocalUpdate, StructureError, Update};
 
 /// A way to store connectivity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -13,17 +13,20 @@ pub enum StructureKind {
     IndexedTriangles,
     /// [`IndexedPolygons`].
     IndexedPolygons,
+    /// [`HalfEdgeMesh`].
+    HalfEdgeMesh,
 }
 
 impl StructureKind {
     /// Every structure, the plainest first.
-    pub const ALL: [Self; 2] = [Self::IndexedTriangles, Self::IndexedPolygons];
+    pub const ALL: [Self; 3] = [Self::IndexedTriangles, Self::IndexedPolygons, Self::HalfEdgeMesh];
 
     /// What the structure is called, in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::IndexedTriangles => "indexed triangles",
             Self::IndexedPolygons => "indexed polygons",
+            Self::HalfEdgeMesh => HalfEdgeMesh::NAME,
         }
     }
 
@@ -34,7 +37,35 @@ impl StructureKind {
             Self::IndexedTriangles => 6.0,
             // Three corners and a start for each of two faces.
             Self::IndexedPolygons => 8.0,
+            // Four words (origin, next, previous, face) for each of six half-edges, one, and one for each of two faces.
+            Self::HalfEdgeMesh => 27.0,
         }
+    }
+
+    /// What a local change costs in this structure; unanswered where it cannot be changed in place.
+    pub fn update_cost(self, _update: Update) -> Cost {
+        match self {
+            Self::IndexedTriangles => Cost::Scan,
+            Self::HalfEdgeMesh => Cost::Local,
+            _ => Cost::Unanswered,
+        }
+    }
+
+    /// The structure of a mesh, to be changed in place; none where [`StructureKind::update_cost`] is unanswered.
+    ///
+    /// # Errors
+    /// As [`StructureKind::build`].
+    pub fn build_for_updates(
+        self,
+        faces: &IndexedPolygons,
+        exec: &Exec,
+    ) -> Result<Option<Box<dyn LocalUpdate>>, StructureError> {
+        exec.check()?;
+        Ok(match self {
+            Self::IndexedTriangles => Some(Box::new(IndexedTriangles::try_from(faces)?)),
+            Self::HalfEdgeMesh => Some(Box::new(HalfEdgeMesh::try_build(faces, exec)?)),
+            _ => None,
+        })
     }
 
     /// The structure of a mesh.
@@ -46,6 +77,7 @@ impl StructureKind {
         Ok(match self {
             Self::IndexedTriangles => Box::new(IndexedTriangles::try_from(faces)?),
             Self::IndexedPolygons => Box::new(faces.clone()),
+            Self::HalfEdgeMesh => Box::new(HalfEdgeMesh::try_build(faces, exec)?),
         })
     }
 }

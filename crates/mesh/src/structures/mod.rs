@@ -5,6 +5,7 @@
 
 mod error;
 mod face_list;
+mod half_edge_mesh;
 mod ids;
 mod incidence;
 mod indexed_polygons;
@@ -12,10 +13,16 @@ mod indexed_triangles;
 mod kind;
 mod scan;
 mod sides;
+mod update;
+mod update_triangles;
 
 pub use error::StructureError;
+pub use half_edge_mesh::{
+    AroundFace, AroundVertex, BreadthFirst, Compacted, Counts, HalfEdgeMesh, Hole, Illegal, Reached, Renumbering,
+};
 pub use ids::{CornerId, EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use incidence::{Answered, Cost, Incidence, Query, Unanswered, Visitor};
 pub use indexed_polygons::IndexedPolygons;
 pub use indexed_triangles::IndexedTriangles;
 pub use kind::StructureKind;
+pub use update::{LocalUpdate, Update};
