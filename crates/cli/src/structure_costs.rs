@@ -5,7 +5,9 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use shapeloom_core::{Exec, Stop};
-use shapeloom_mesh::structures::{Cost, Incidence, IndexedPolygons, Query, StructureError, StructureKind};
+use shapeloom_mesh::structures::{
+    Cost, Incidence, IndexedPolygons, Query, StructureError, StructureKind, Update, VertexId,
+};
 
 use crate::workload::Workload;
 
@@ -24,8 +26,10 @@ pub(crate) struct StructureCosts {
     /// What each query costs in principle, and the mean time of one in seconds, in the order of [`Query::ALL`]; none where
     /// the structure cannot answer or the mesh has no such elements.
     pub(crate) queries: [(Cost, Option<f64>); 9],
-    /// The time to change the mesh at one place, in seconds.
+    /// The time to change the mesh at one place, in seconds: in place, or by making the structure anew.
     pub(crate) update: f64,
+    /// Whether it can be changed in place, and what that costs in principle.
+    pub(crate) in_place: Cost,
 }
 
 impl StructureCosts {
@@ -55,7 +59,11 @@ impl StructureCosts {
             };
             *slot = (built.cost(query), time_of(&*built, query, &elements, exec)?);
         }
-        Ok(Ok(Self { bytes: built.memory_bytes(), build, queries, update: build }))
+        let bytes = built.memory_bytes();
+        drop(built);
+        let in_place = kind.update_cost(Update::FlipEdge);
+        let changed = if in_place == Cost::Unanswered { None } else { time_of_updates(kind, faces, exec)? };
+        Ok(Ok(Self { bytes, build, queries, update: changed.unwrap_or(build), in_place }))
     }
 
     /// The time that a workload takes with the structure, its making included; the queries that it cannot answer instead.
@@ -71,6 +79,36 @@ impl StructureCosts {
         }
         if missing.is_empty() { Ok(total) } else { Err(missing) }
     }
+}
+
+/// The mean time of a flip, split or collapse of an edge, one after the other all over the mesh; none where no edge lets itself be
+/// changed.
+fn time_of_updates(kind: StructureKind, faces: &IndexedPolygons, exec: &Exec) -> Result<Option<f64>, Stop> {
+    let mut structure = match kind.build_for_updates(faces, exec) {
+        Ok(Some(structure)) => structure,
+        Err(StructureError::Stop(stop)) => return Err(stop),
+        _ => return Ok(None),
+    };
+    let sides = some_of(faces.face_count(), |face| face as u32).into_iter().filter_map(|face| {
+        let corners = structure.answer(Query::FV, face).ok()?;
+        Some([VertexId(corners[0]), VertexId(corners[1])])
+    });
+    let sides: Vec<[VertexId; 2]> = sides.collect();
+    let start = Instant::now();
+    let mut done = 0;
+    for (i, side) in sides.into_iter().enumerate() {
+        exec.check()?;
+        let changed = match i % 3 {
+            0 => structure.flip(side).is_ok(),
+            1 => structure.split(side).is_ok(),
+            _ => structure.collapse(side).is_ok(),
+        };
+        done += usize::from(changed);
+        if start.elapsed() >= ENOUGH {
+            break;
+        }
+    }
+    Ok((done > 0).then(|| start.elapsed().as_secs_f64() / done as f64))
 }
 
 /// Elements spread evenly over all of them.

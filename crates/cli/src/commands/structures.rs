@@ -111,7 +111,8 @@ fn told(
     let _ = writeln!(text, "{name}: {vertices} vertices, {count} faces, {} corners", faces.corners().len());
     text += "B/vert and B/face: bytes of connectivity a vertex and a face. In words of four bytes a vertex: as measured, as\n\
              laid out for a large closed triangle mesh, and as textbooks count, with three words of coordinates. Queries:\n\
-             mean time of one; with a star it looks at all elements.\n";
+             mean time of one; with a star it looks at all elements. Update: of a flip, split or collapse of an edge; with an\n\
+             r the structure is made anew.\n";
     let _ = write!(
         text,
         "\n{:<24}{:>8}{:>8}{:>8}{:>8}{:>6}{:>9}",
@@ -120,7 +121,7 @@ fn told(
     for query in Query::ALL {
         let _ = write!(text, "{:>9}", query.name());
     }
-    let _ = writeln!(text);
+    let _ = writeln!(text, "{:>9}", "update");
     for (kind, row) in rows {
         let Ok(costs) = row else { continue };
         let per = |count: usize| costs.bytes as f64 / count.max(1) as f64;
@@ -137,7 +138,12 @@ fn told(
             };
             let _ = write!(text, "{cell:>9}");
         }
-        let _ = writeln!(text);
+        let mark = match costs.in_place {
+            Cost::Local => "",
+            Cost::Scan => "*",
+            Cost::Unanswered => "r",
+        };
+        let _ = writeln!(text, "{:>9}", seconds(costs.update) + mark);
     }
     for (kind, row) in rows {
         if let Err(error) = row {
@@ -175,6 +181,7 @@ fn told_as_json(name: &str, faces: &IndexedPolygons, rows: &[Row], workload: &Wo
                 object.insert("words_per_vertex".into(), json!(per(faces.vertex_count()) / 4.0));
                 object.insert("build_s".into(), json!(costs.build));
                 object.insert("update_s".into(), json!(costs.update));
+                object.insert("updates_in_place".into(), json!(costs.in_place != Cost::Unanswered));
                 let queries = Query::ALL.into_iter().zip(costs.queries).map(|(query, (cost, time))| {
                     let cost = match cost {
                         Cost::Local => "local",
