@@ -24,7 +24,7 @@ pub(crate) fn run(arguments: &CheckArguments, session: &mut Session<'_>) -> Resu
     let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     let wish = wish(&arguments.way, &[Kind::TriMesh])?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
-    let job = Job { wish, tolerance, settings: settings.others };
+    let job = Job { wish, tolerance, settings: settings.converting(input.format) };
     session.stage("checking");
     let mut words = Vec::new();
     let gathering = Gathering { weld: arguments.weld, together: arguments.together };

@@ -15,10 +15,10 @@ use crate::session::Session;
 use crate::settings;
 
 pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let settings = settings::Settings::sort(&arguments.settings);
+    let settings = settings::Settings::of_made(&arguments.settings);
     let delivery = Delivery::new(&arguments.target, &settings)?;
     delivery.check(session)?;
-    let made = make(&arguments.shape, &settings.others, &session.exec())?;
+    let made = make(&arguments.shape, settings.making(), &session.exec())?;
     session.say(format_args!(
         "{}: {} faces; error {}",
         arguments.shape,
