@@ -163,6 +163,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
     ),
     (
+        "W-height-tolerance",
+        "Some cells of a height field are twisted: their four heights lie so far from a plane that triangles come near the surface between them only when the cell is cut into many. They were cut as finely as max_cell_steps allows and are still farther than the tolerance; the report says how far. A tolerance of 0 can be reached by cells without twist alone. Allow more steps with --set max_cell_steps=N, or a larger tolerance.",
+    ),
+    (
         "W-info-open",
         "The surface has a border, or faces that share an edge do not turn alike, so it encloses no volume: the number given is the signed volume of the cones from the faces to the centre of the bounding box, and changes with that centre.",
     ),

@@ -2,7 +2,7 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+    GreedyInsertion, HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -14,6 +14,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
+        entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<VertexNormals, TriMesh>(Effect::Exact),

@@ -6,7 +6,7 @@
 //! - [`Column`], [`ListColumn`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every
 //!   operation by one function, or their loss reported.
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
-//!   [`TriangulatePolygons`], [`TriangulateHeightField`].
+//!   [`TriangulatePolygons`], [`TriangulateHeightField`], [`GreedyInsertion`].
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
@@ -18,6 +18,7 @@ mod column;
 mod ear_clipping;
 mod error;
 mod geometric_graph;
+mod greedy_insertion;
 mod height_field;
 mod list_column;
 mod mesh_attributes;
@@ -38,6 +39,7 @@ pub use collapsed::collapsed_leave_traces;
 pub use column::{Blend, Column, TransformRule, Values};
 pub use error::{AttributeError, Domain, MeshError};
 pub use geometric_graph::GeometricGraph;
+pub use greedy_insertion::GreedyInsertion;
 pub use height_field::HeightField;
 pub use list_column::ListColumn;
 pub use mesh_attributes::MeshAttributes;
