@@ -2,7 +2,8 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    GreedyInsertion, HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+    GreedyInsertion, HeightField, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons,
+    VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -16,6 +17,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]

@@ -34,7 +34,8 @@ fn random_field(dice: &mut Dice, round: u32) -> HeightField {
     field(columns, rows, |k| {
         let (x, y) = (f64::from(k % columns), f64::from(k / columns));
         let hill = (a * x).sin() + (b * y).cos() * (a * x * 0.5).cos();
-        let missing = if round % 3 == 0 { pond.distance(DVec2::new(x, y)) < 20.0 * holes } else { dice.unit() < holes };
+        let missing =
+            if round.is_multiple_of(3) { pond.distance(DVec2::new(x, y)) < 20.0 * holes } else { dice.unit() < holes };
         match round % 5 {
             _ if missing => f64::NAN,
             0 | 1 => hill,
