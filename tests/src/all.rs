@@ -19,6 +19,7 @@ mod documents;
 #[path = "../fuzz/entry.rs"]
 mod entry;
 mod floors;
+mod greedy_insertion;
 mod half_edges;
 mod harness;
 mod height_files;

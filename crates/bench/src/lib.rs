@@ -7,6 +7,7 @@ mod closest;
 mod files;
 mod half_edges;
 mod hausdorff;
+mod heightfield;
 mod measure;
 mod queries;
 mod rays;
@@ -43,6 +44,9 @@ struct Arguments {
     /// The tolerance of conversions, relative to the diagonal of the input's bounding box
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
+    /// How many samples a side has a terrain made by formula
+    #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(2..=16_384))]
+    size: u32,
     /// A file with the JSON lines of peers: print a table of their figures beside these instead
     #[arg(long, value_name = "FILE", conflicts_with = "json")]
     against: Option<PathBuf>,
@@ -79,6 +83,8 @@ pub enum Task {
     Halfedge,
     /// Sweeps over the one-rings of the same mesh: a sum over neighbours, and the vertices' normals.
     Onering,
+    /// A terrain made by formula to triangles: regular, and adaptive.
+    Heightfield,
 }
 
 impl Task {
@@ -131,7 +137,7 @@ impl Task {
                 "sum" => vec!["p.openmesh.one_ring_sum".into()],
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
-            Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff => Vec::new(),
+            Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
         }
     }
 }
@@ -148,6 +154,7 @@ pub(crate) struct Setting {
     pub(crate) data: PathBuf,
     pub(crate) runs: u32,
     pub(crate) tolerance: f64,
+    pub(crate) size: u32,
 }
 
 /// Runs a command line, the program's name first, and returns its exit code: 0, or 2 for anything that went wrong.
@@ -162,8 +169,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
             return if written.is_ok() { code } else { 2 };
         }
     };
-    let Arguments { task, data, runs, threads, tolerance, against, json: _ } = arguments;
-    let setting = Setting { data, runs, tolerance };
+    let Arguments { task, data, runs, threads, tolerance, size, against, json: _ } = arguments;
+    let setting = Setting { data, runs, tolerance, size };
     let work = || match task {
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
         Task::Read => files::read_files(&setting),
@@ -177,6 +184,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Closest => closest::run(&setting),
         Task::Halfedge => half_edges::build(&setting).map(|outcome| vec![outcome]),
         Task::Onering => half_edges::sweep(&setting),
+        Task::Heightfield => heightfield::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

@@ -196,6 +196,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
     ),
     (
+        "W-face-turned",
+        "Faces were turned by more than a right angle when vertices moved: the mesh is folded there. Ask for less, or start from a mesh that is nearer to what is wanted.",
+    ),
+    (
+        "W-height-tolerance",
+        "Some cells of a height field are twisted: their four heights lie so far from a plane that triangles come near the surface between them only when the cell is cut into many. They were cut as finely as max_cell_steps allows and are still farther than the tolerance; the report says how far. A tolerance of 0 can be reached by cells without twist alone. Allow more steps with --set max_cell_steps=N, or a larger tolerance.",
+    ),
+    (
         "W-info-open",
         "The surface has a border, or faces that share an edge do not turn alike, so it encloses no volume: the number given is the signed volume of the cones from the faces to the centre of the bounding box, and changes with that centre.",
     ),
@@ -222,6 +230,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-patch-vanished",
         "A patch, or a part of it, is only a point or a line and left no triangle: the error is unknown there.",
+    ),
+    (
+        "W-planarity-missed",
+        "Some quadrilaterals are farther from flat than was asked for. Not every mesh has flat quadrilaterals near it: a grid along the straight lines of a saddle has none, and a border that is held may leave no room. The report says how far they are. Allow more steps, let the border go, or make a grid along the lines of curvature.",
+    ),
+    (
+        "W-planarize-polygons",
+        "Polygons of more than four corners are not made flat: only quadrilaterals are. Cut them into quadrilaterals or triangles first.",
     ),
     ("W-polygon-simple", "A polygon crosses itself or has no area; it was cut into triangles as well as possible."),
 ];

@@ -2,7 +2,8 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    HeightField, OrientFaces, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+    GreedyInsertion, HeightField, OrientFaces, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField,
+    TriangulatePolygons, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -14,7 +15,9 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
+        entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),

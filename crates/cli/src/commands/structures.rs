@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &StructuresArguments, session: &mut Session<'_>) ->
     let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     let wish = wish(&arguments.way, &[Kind::TriMesh])?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
-    let job = Job { wish, tolerance, settings: settings.others };
+    let job = Job { wish, tolerance, settings: settings.converting(input.format) };
     let exec = session.exec();
     session.stage("measuring");
     let gathering = Gathering { weld: arguments.weld, together: true };
