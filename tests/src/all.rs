@@ -18,6 +18,7 @@ mod documents;
 #[path = "../fuzz/entry.rs"]
 mod entry;
 mod floors;
+mod half_edges;
 mod harness;
 mod laws;
 mod malformed;

@@ -8,6 +8,7 @@
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
 //!   [`TriangulatePolygons`], [`OrientFaces`], [`TriangulateHeightField`].
 //! - [`structures`]: ways to store connectivity behind one interface, and converters between them.
+//! - [`EditableMesh`]: flips, splits and collapses of constant time, with positions and attributes.
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
@@ -18,6 +19,7 @@ mod carry;
 mod collapsed;
 mod column;
 mod ear_clipping;
+mod editable_mesh;
 mod error;
 mod geometric_graph;
 mod height_field;
@@ -39,6 +41,7 @@ pub use attributes::{Attributes, COLOR, GROUP, MATERIAL, NORMAL, PATCH, SMOOTHIN
 pub use carry::{MeshOrigins, Origins, carry};
 pub use collapsed::collapsed_leave_traces;
 pub use column::{Blend, Column, TransformRule, Values};
+pub use editable_mesh::EditableMesh;
 pub use error::{AttributeError, Domain, MeshError};
 pub use geometric_graph::GeometricGraph;
 pub use height_field::HeightField;

@@ -103,7 +103,7 @@ fn triangulate_face(
         out.push([0, 1, 2]);
         return Ok(true);
     }
-    project(mesh, face, flat);
+    project(mesh.outline(face), flat);
     if count == 4 {
         let corners: Vec<DVec3> = mesh.outline(face).collect();
         let valid = |a: usize, b: usize, c: usize, d: usize| {
@@ -124,9 +124,9 @@ fn triangulate_face(
     Ok(clip_ears(flat, exec, out)?)
 }
 
-/// Projects a face along the largest component of its Newell vector, turned so that it is counter-clockwise.
-fn project(mesh: &PolyMesh, face: usize, flat: &mut Vec<DVec2>) {
-    let normal = newell_vector(mesh.outline(face));
+/// Projects an outline along the largest component of its Newell vector, turned so that it is counter-clockwise.
+pub(crate) fn project(outline: impl Iterator<Item = DVec3> + Clone, flat: &mut Vec<DVec2>) {
+    let normal = newell_vector(outline.clone());
     let size = normal.abs();
     let drop = if size.x >= size.y && size.x >= size.z {
         0
@@ -138,7 +138,7 @@ fn project(mesh: &PolyMesh, face: usize, flat: &mut Vec<DVec2>) {
     let (i, j) = ((drop + 1) % 3, (drop + 2) % 3);
     let (i, j) = if normal[drop] >= 0.0 { (i, j) } else { (j, i) };
     flat.clear();
-    flat.extend(mesh.outline(face).map(|corner| DVec2::new(corner[i], corner[j])));
+    flat.extend(outline.map(|corner| DVec2::new(corner[i], corner[j])));
 }
 
 #[cfg(test)]

@@ -109,14 +109,9 @@ fn told(
     let (vertices, count) = (faces.vertex_count(), faces.face_count());
     let mut text = String::new();
     let _ = writeln!(text, "{name}: {vertices} vertices, {count} faces, {} corners", faces.corners().len());
-    let _ = writeln!(
-        text,
-        "bytes of connectivity a vertex and a face; words of four bytes a vertex, measured and in theory (of a"
-    );
-    let _ = writeln!(
-        text,
-        "large closed triangle mesh; coordinates of three words more); mean time of a query, * by looking at all"
-    );
+    text += "B/vert and B/face: bytes of connectivity a vertex and a face. In words of four bytes a vertex: as measured, as\n\
+             laid out for a large closed triangle mesh, and as textbooks count, with three words of coordinates. Queries:\n\
+             mean time of one; with a star it looks at all elements.\n";
     let _ = write!(
         text,
         "\n{:<24}{:>8}{:>8}{:>8}{:>8}{:>6}{:>9}",

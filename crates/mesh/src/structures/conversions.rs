@@ -7,8 +7,8 @@
 use shapeloom_core::Exec;
 
 use super::{
-    AdjacencyMatrix, CornerTable, EdgeList, ExtendedEdgeList, FaceVertex, IncidenceMatrices, IndexedPolygons,
-    IndexedTriangles, StructureError, TriangleHalfEdges, TriangleSoup, WingedEdge,
+    AdjacencyMatrix, CornerTable, EdgeList, ExtendedEdgeList, FaceVertex, HalfEdgeMesh, IncidenceMatrices,
+    IndexedPolygons, IndexedTriangles, StructureError, TriangleHalfEdges, TriangleSoup, WingedEdge,
 };
 
 /// An `Exec` for conversions that cannot fail.
@@ -72,22 +72,27 @@ macro_rules! convert_by_faces {
 
 convert_by_faces! {
     TriangleSoup => total [EdgeList, FaceVertex],
-        partial [ExtendedEdgeList, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix, IncidenceMatrices];
+        partial [HalfEdgeMesh, ExtendedEdgeList, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix, IncidenceMatrices];
     ExtendedEdgeList => total [EdgeList, FaceVertex],
-        partial [IndexedTriangles, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix, IncidenceMatrices];
+        partial [HalfEdgeMesh, IndexedTriangles, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix, IncidenceMatrices];
     IndexedTriangles => total [EdgeList, FaceVertex],
-        partial [ExtendedEdgeList, WingedEdge, AdjacencyMatrix, IncidenceMatrices];
+        partial [HalfEdgeMesh, ExtendedEdgeList, WingedEdge, AdjacencyMatrix, IncidenceMatrices];
     FaceVertex => total [EdgeList],
+        partial [
+            HalfEdgeMesh, ExtendedEdgeList, IndexedTriangles, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix,
+            IncidenceMatrices
+        ];
+    WingedEdge => total [EdgeList, FaceVertex],
+        partial [HalfEdgeMesh, ExtendedEdgeList, IndexedTriangles, TriangleHalfEdges, CornerTable, AdjacencyMatrix, IncidenceMatrices];
+    TriangleHalfEdges => total [EdgeList, FaceVertex],
+        partial [HalfEdgeMesh, ExtendedEdgeList, WingedEdge, AdjacencyMatrix, IncidenceMatrices];
+    CornerTable => total [EdgeList, FaceVertex],
+        partial [HalfEdgeMesh, ExtendedEdgeList, WingedEdge, AdjacencyMatrix, IncidenceMatrices];
+    IncidenceMatrices => total [EdgeList, FaceVertex],
+        partial [HalfEdgeMesh, ExtendedEdgeList, IndexedTriangles, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix];
+    HalfEdgeMesh => total [EdgeList, FaceVertex],
         partial [
             ExtendedEdgeList, IndexedTriangles, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix,
             IncidenceMatrices
         ];
-    WingedEdge => total [EdgeList, FaceVertex],
-        partial [ExtendedEdgeList, IndexedTriangles, TriangleHalfEdges, CornerTable, AdjacencyMatrix, IncidenceMatrices];
-    TriangleHalfEdges => total [EdgeList, FaceVertex],
-        partial [ExtendedEdgeList, WingedEdge, AdjacencyMatrix, IncidenceMatrices];
-    CornerTable => total [EdgeList, FaceVertex],
-        partial [ExtendedEdgeList, WingedEdge, AdjacencyMatrix, IncidenceMatrices];
-    IncidenceMatrices => total [EdgeList, FaceVertex],
-        partial [ExtendedEdgeList, IndexedTriangles, WingedEdge, TriangleHalfEdges, CornerTable, AdjacencyMatrix];
 }

@@ -43,6 +43,15 @@ impl IndexedTriangles {
         Self { vertex_count, triangles }
     }
 
+    pub(crate) fn triangles_mut(&mut self) -> &mut Vec<[u32; 3]> {
+        &mut self.triangles
+    }
+
+    pub(crate) fn push_vertex(&mut self) -> u32 {
+        self.vertex_count += 1;
+        self.vertex_count - 1
+    }
+
     pub(crate) fn into_triangles(self) -> Vec<[u32; 3]> {
         self.triangles
     }

@@ -5,8 +5,9 @@ use std::fmt;
 use shapeloom_core::Exec;
 
 use super::{
-    AdjacencyMatrix, CornerTable, EdgeList, ExtendedEdgeList, FaceVertex, Incidence, IncidenceMatrices,
-    IndexedPolygons, IndexedTriangles, StructureError, TriangleHalfEdges, TriangleSoup, WingedEdge,
+    AdjacencyMatrix, CornerTable, Cost, EdgeList, ExtendedEdgeList, FaceVertex, HalfEdgeMesh, Incidence,
+    IncidenceMatrices, IndexedPolygons, IndexedTriangles, LocalUpdate, StructureError, TriangleHalfEdges, TriangleSoup,
+    Update, WingedEdge,
 };
 
 /// A way to store connectivity.
@@ -28,6 +29,8 @@ pub enum StructureKind {
     WingedEdge,
     /// [`TriangleHalfEdges`].
     TriangleHalfEdges,
+    /// [`HalfEdgeMesh`].
+    HalfEdgeMesh,
     /// [`CornerTable`].
     CornerTable,
     /// [`AdjacencyMatrix`].
@@ -38,7 +41,7 @@ pub enum StructureKind {
 
 impl StructureKind {
     /// Every structure, the plainest first.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::TriangleSoup,
         Self::EdgeList,
         Self::ExtendedEdgeList,
@@ -47,6 +50,7 @@ impl StructureKind {
         Self::FaceVertex,
         Self::WingedEdge,
         Self::TriangleHalfEdges,
+        Self::HalfEdgeMesh,
         Self::CornerTable,
         Self::AdjacencyMatrix,
         Self::IncidenceMatrices,
@@ -66,6 +70,7 @@ impl StructureKind {
             Self::CornerTable => "corner table",
             Self::AdjacencyMatrix => "adjacency matrix",
             Self::IncidenceMatrices => "incidence matrices",
+            Self::HalfEdgeMesh => HalfEdgeMesh::NAME,
         }
     }
 
@@ -96,6 +101,8 @@ impl StructureKind {
             // Vertices and edges: six entries, by columns with three starts, by rows with one. Edges and faces: six entries, by columns
             // with two starts, by rows with three.
             Self::IncidenceMatrices => 33.0,
+            // Four words (origin, next, previous, face) for each of six half-edges, a half-edge of the vertex, and one for each of two faces.
+            Self::HalfEdgeMesh => 27.0,
         }
     }
 
@@ -111,6 +118,32 @@ impl StructureKind {
             Self::WingedEdge => Some(3.0 + 1.0 + 24.0 + 2.0),
             _ => None,
         }
+    }
+
+    /// What a local change costs in this structure; unanswered where it cannot be changed in place.
+    pub fn update_cost(self, _update: Update) -> Cost {
+        match self {
+            Self::IndexedTriangles => Cost::Scan,
+            Self::HalfEdgeMesh => Cost::Local,
+            _ => Cost::Unanswered,
+        }
+    }
+
+    /// The structure of a mesh, to be changed in place; none where [`StructureKind::update_cost`] is unanswered.
+    ///
+    /// # Errors
+    /// As [`StructureKind::build`].
+    pub fn build_for_updates(
+        self,
+        faces: &IndexedPolygons,
+        exec: &Exec,
+    ) -> Result<Option<Box<dyn LocalUpdate>>, StructureError> {
+        exec.check()?;
+        Ok(match self {
+            Self::IndexedTriangles => Some(Box::new(IndexedTriangles::try_from(faces)?)),
+            Self::HalfEdgeMesh => Some(Box::new(HalfEdgeMesh::try_build(faces, exec)?)),
+            _ => None,
+        })
     }
 
     /// The structure of a mesh.
@@ -133,6 +166,7 @@ impl StructureKind {
             Self::CornerTable => Box::new(CornerTable::from(half_edges()?)),
             Self::AdjacencyMatrix => Box::new(AdjacencyMatrix::try_build(faces, exec)?),
             Self::IncidenceMatrices => Box::new(IncidenceMatrices::try_build(faces, exec)?),
+            Self::HalfEdgeMesh => Box::new(HalfEdgeMesh::try_build(faces, exec)?),
         })
     }
 }

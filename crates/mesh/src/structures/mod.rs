@@ -12,6 +12,7 @@ mod error;
 mod extended_edge_list;
 mod face_list;
 mod face_vertex;
+mod half_edge_mesh;
 mod ids;
 mod incidence;
 mod incidence_matrices;
@@ -27,6 +28,8 @@ mod scan;
 mod sides;
 mod triangle_half_edges;
 mod triangle_soup;
+mod update;
+mod update_triangles;
 mod walk;
 mod winged_edge;
 
@@ -37,6 +40,9 @@ pub use error::StructureError;
 pub use extended_edge_list::{ExtendedEdge, ExtendedEdgeList};
 pub(crate) use face_list::FaceList;
 pub use face_vertex::FaceVertex;
+pub use half_edge_mesh::{
+    AroundFace, AroundVertex, BreadthFirst, Compacted, Counts, HalfEdgeMesh, Hole, Illegal, Reached, Renumbering,
+};
 pub use ids::{CornerId, EdgeId, FaceId, HalfEdgeId, VertexId};
 pub use incidence::{Answered, Cost, Incidence, Query, Unanswered, Visitor};
 pub use incidence_matrices::{IncidenceMatrices, SignedMatrix};
@@ -46,4 +52,5 @@ pub use kind::StructureKind;
 pub(crate) use orientation::Orientation;
 pub use triangle_half_edges::{OneRing, TriangleHalfEdges};
 pub use triangle_soup::TriangleSoup;
+pub use update::{LocalUpdate, Update};
 pub use winged_edge::{WingedEdge, Wings};

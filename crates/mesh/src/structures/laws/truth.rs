@@ -126,7 +126,7 @@ impl Truth {
             | StructureKind::AdjacencyMatrix => true,
             StructureKind::IncidenceMatrices => self.repeating().is_empty(),
             StructureKind::ExtendedEdgeList => sides(),
-            StructureKind::WingedEdge => sides() && self.pinched().is_empty(),
+            StructureKind::WingedEdge | StructureKind::HalfEdgeMesh => sides() && self.pinched().is_empty(),
             StructureKind::TriangleHalfEdges | StructureKind::CornerTable => {
                 triangles() && sides() && self.pinched().is_empty()
             }
