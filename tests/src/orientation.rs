@@ -111,7 +111,7 @@ fn random_faces_are_oriented_or_shown_to_be_one_sided() {
             faces.push((0..corners).map(|_| (dice.next() % vertices) as u32).collect());
         }
         for corners in &mut faces {
-            if dice.next() % 3 == 0 {
+            if dice.next().is_multiple_of(3) {
                 corners[1..].reverse();
             }
         }

@@ -23,7 +23,7 @@ fn fits(kind: StructureKind, topology: &Topology, triangles: bool) -> bool {
         Kind::TriangleSoup | Kind::IndexedTriangles => triangles,
         Kind::IncidenceMatrices => topology.repeating_faces.is_empty(),
         Kind::ExtendedEdgeList => edges,
-        Kind::WingedEdge => edges && topology.non_manifold_vertices.is_empty(),
+        Kind::WingedEdge | StructureKind::HalfEdgeMesh => edges && topology.non_manifold_vertices.is_empty(),
         Kind::TriangleHalfEdges | Kind::CornerTable => triangles && edges && topology.non_manifold_vertices.is_empty(),
         _ => true,
     }

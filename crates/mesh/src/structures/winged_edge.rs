@@ -436,4 +436,14 @@ mod tests {
         let error = WingedEdge::try_new(mesh.edges, mesh.vertex_edges, vec![0]).unwrap_err();
         assert_eq!(error.to_string(), "face 0: its edges are no single closed chain");
     }
+
+    /// Two separate triangles of which a vertex is called the same.
+    #[test]
+    fn fans_that_are_put_together_by_hand_are_refused() {
+        let mut mesh = built(6, &[vec![0, 1, 2], vec![3, 4, 5]]).unwrap();
+        mesh.edges.iter_mut().flat_map(|edge| &mut edge.vertices).filter(|end| **end == 5).for_each(|end| *end = 2);
+        mesh.vertex_edges[5] = NONE;
+        let error = WingedEdge::try_new(mesh.edges, mesh.vertex_edges, mesh.face_edges).unwrap_err();
+        assert_eq!(error, StructureError::NonManifoldVertex { vertex: 2, fans: 2, count: 1 });
+    }
 }
