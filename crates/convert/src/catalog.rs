@@ -2,8 +2,8 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    GreedyInsertion, HeightField, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons,
-    VertexNormals, Weld,
+    Compact, GreedyInsertion, HeightField, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField,
+    TriangulatePolygons, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -19,6 +19,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
         entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
+        entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]
 }

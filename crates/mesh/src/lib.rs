@@ -7,7 +7,7 @@
 //!   operation by one function, or their loss reported.
 //! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
 //!   [`TriangulatePolygons`], [`TriangulateHeightField`], [`GreedyInsertion`],
-//!   [`PlanarizeQuads`].
+//!   [`PlanarizeQuads`], [`Compact`].
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
@@ -16,6 +16,7 @@ mod attributes;
 mod carry;
 mod collapsed;
 mod column;
+mod compact_mesh;
 mod ear_clipping;
 mod error;
 mod geometric_graph;
@@ -41,6 +42,7 @@ pub use attributes::{Attributes, COLOR, GROUP, MATERIAL, NORMAL, PATCH, SMOOTHIN
 pub use carry::{MeshOrigins, Origins, carry};
 pub use collapsed::collapsed_leave_traces;
 pub use column::{Blend, Column, TransformRule, Values};
+pub use compact_mesh::{Compact, CompactMesh};
 pub use error::{AttributeError, Domain, MeshError};
 pub use geometric_graph::GeometricGraph;
 pub use greedy_insertion::GreedyInsertion;
