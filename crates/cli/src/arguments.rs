@@ -276,7 +276,8 @@ pub(crate) struct CompareArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct MakeArguments {
-    /// Which shape: tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, torus, cylinder, cone or grid
+    /// Which shape: tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, torus, cylinder, cone, grid,
+    /// ellipsoid or quadric
     pub(crate) shape: String,
     #[command(flatten)]
     pub(crate) target: TargetArguments,

@@ -192,6 +192,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-check-volume", "A closed surface encloses a volume of 0 or less, so there is nothing to print."),
     (
+        "W-compact-collapsed",
+        "Triangles lost their area when positions were rounded to the steps of a compact store: two of their corners are the same step. The report says how far vertices moved. Take more bits, or weld and simplify first.",
+    ),
+    (
         "W-compare-size",
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
     ),

@@ -2,7 +2,7 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    GreedyInsertion, HeightField, OrientFaces, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField,
+    Compact, GreedyInsertion, HeightField, OrientFaces, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField,
     TriangulatePolygons, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
@@ -22,6 +22,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),
         entry::<OrientFaces, PolyMesh>(Effect::Exact),
+        entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]
 }

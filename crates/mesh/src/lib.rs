@@ -10,7 +10,7 @@
 //! - [`structures`]: ways to store connectivity behind one interface, and converters between them.
 //! - [`EditableMesh`]: flips, splits and collapses of constant time, with positions and attributes.
 //!   [`TriangulatePolygons`], [`TriangulateHeightField`], [`GreedyInsertion`],
-//!   [`PlanarizeQuads`].
+//!   [`PlanarizeQuads`], [`Compact`].
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
@@ -20,6 +20,7 @@ mod attributes;
 mod carry;
 mod collapsed;
 mod column;
+mod compact_mesh;
 mod ear_clipping;
 mod editable_mesh;
 mod error;
@@ -47,6 +48,7 @@ pub use attributes::{Attributes, COLOR, GROUP, MATERIAL, NORMAL, PATCH, SMOOTHIN
 pub use carry::{MeshOrigins, Origins, carry};
 pub use collapsed::collapsed_leave_traces;
 pub use column::{Blend, Column, TransformRule, Values};
+pub use compact_mesh::{Compact, CompactMesh};
 pub use editable_mesh::EditableMesh;
 pub use error::{AttributeError, Domain, MeshError};
 pub use geometric_graph::GeometricGraph;

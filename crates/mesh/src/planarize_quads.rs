@@ -5,6 +5,7 @@ use shapeloom_core::{
     Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report, Severity, options,
 };
 
+use crate::normals::length;
 use crate::{MeshError, PolyMesh, QuadPlanarity, newell_vector};
 
 options! {
@@ -80,11 +81,6 @@ impl Convert<PolyMesh> for PlanarizeQuads {
 
 /// A quadrilateral with its row of derivatives and its place in five vectors of the solver.
 const BYTES_A_FACE: u64 = 4 + 16 + 4 * 24 + 6 * 8;
-
-fn length(vector: DVec3) -> f64 {
-    let size = vector.abs().max_element();
-    if size > 0.0 { (vector / size).length() * size } else { 0.0 }
-}
 
 /// Measures what came out, from its own coordinates, and names the faces that are not flat enough or turned over.
 fn account(options: &PlanarizeQuads, source: &PolyMesh, mesh: &PolyMesh, quads: &[u32], report: &mut Report) {
