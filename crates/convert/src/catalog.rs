@@ -2,7 +2,8 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    HeightField, PolyMesh, TriMesh, TriangulateHeightField, TriangulatePolygons, VertexNormals, Weld,
+    Compact, GreedyInsertion, HeightField, OrientFaces, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField,
+    TriangulatePolygons, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -14,8 +15,14 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
+        entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
+        entry::<Weld, PolyMesh>(Effect::Reported),
+        entry::<OrientFaces, TriMesh>(Effect::Exact),
+        entry::<OrientFaces, PolyMesh>(Effect::Exact),
+        entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]
 }

@@ -49,6 +49,14 @@ pub enum StructureError {
         /// How many such vertices there are.
         count: usize,
     },
+    /// A surface with one side: a ring of faces, each sharing an edge with the next and the last with the first, that comes back
+    /// turned over.
+    NotOrientable {
+        /// The ring.
+        faces: Vec<u32>,
+        /// How many parts of the surface have one side.
+        count: usize,
+    },
     /// Edges where the structure needs faces.
     NoFaces,
     /// Parts of the structure that contradict each other.
@@ -120,6 +128,19 @@ impl fmt::Display for StructureError {
             Self::NonManifoldVertex { vertex, fans, count } => {
                 write!(f, "vertex {vertex}: found {fans} fans of faces, expected one{}", Others(*count))
             }
+            Self::NotOrientable { faces, count } => {
+                f.write_str("faces ")?;
+                for (i, face) in faces.iter().take(12).enumerate() {
+                    write!(f, "{}{face}", if i == 0 { "" } else { ", " })?;
+                }
+                let rest = if faces.len() > 12 { ", ..." } else { "" };
+                let length = faces.len();
+                write!(
+                    f,
+                    "{rest}: found a ring of {length} that turns over, expected a surface with two sides{}",
+                    Others(*count)
+                )
+            }
             Self::NoFaces => f.write_str("found edges alone, expected faces"),
             Self::Inconsistent { kind, index, what } => write!(f, "{kind} {index}: {what}"),
             Self::OverBudget(error) => error.fmt(f),
@@ -138,6 +159,7 @@ impl Diagnostic for StructureError {
             Self::NonManifoldEdge { .. } => "E-structure-edge",
             Self::Orientation { .. } => "E-structure-orientation",
             Self::NonManifoldVertex { .. } => "E-structure-vertex",
+            Self::NotOrientable { .. } => "E-structure-one-sided",
             Self::NoFaces => "E-structure-faces",
             Self::Inconsistent { .. } => "E-structure-inconsistent",
             Self::OverBudget(error) => error.code(),

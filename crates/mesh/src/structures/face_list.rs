@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::{PolyMesh, TriMesh};
+
 /// Faces as lists of vertices, corner after corner.
 pub(crate) trait FaceList: Sync {
     /// The number of vertices, isolated ones too.
@@ -55,4 +57,49 @@ pub(crate) fn sides_of(faces: &(impl FaceList + ?Sized), face: u32) -> impl Iter
 /// The smaller vertex first.
 pub(crate) fn ordered([a, b]: [u32; 2]) -> [u32; 2] {
     if a < b { [a, b] } else { [b, a] }
+}
+
+impl FaceList for TriMesh {
+    fn vertex_total(&self) -> usize {
+        self.positions().len()
+    }
+
+    fn face_total(&self) -> usize {
+        self.triangles().len()
+    }
+
+    fn all_corners(&self) -> &[u32] {
+        self.triangles().as_flattened()
+    }
+
+    fn corner_range(&self, face: u32) -> Range<usize> {
+        face as usize * 3..face as usize * 3 + 3
+    }
+
+    fn face_of(&self, corner: u32) -> u32 {
+        corner / 3
+    }
+}
+
+impl FaceList for PolyMesh {
+    fn vertex_total(&self) -> usize {
+        self.positions().len()
+    }
+
+    fn face_total(&self) -> usize {
+        self.face_count()
+    }
+
+    fn all_corners(&self) -> &[u32] {
+        self.wedge_vertices()
+    }
+
+    fn corner_range(&self, face: u32) -> Range<usize> {
+        self.wedges(face as usize)
+    }
+
+    fn face_of(&self, corner: u32) -> u32 {
+        // The last face that starts at or before the corner; no face is empty.
+        self.face_starts().partition_point(|&start| start <= corner) as u32 - 1
+    }
 }

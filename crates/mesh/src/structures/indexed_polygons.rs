@@ -104,6 +104,15 @@ impl From<&IndexedTriangles> for IndexedPolygons {
     }
 }
 
+/// Triangles are polygons; the corners are moved, not copied.
+impl From<IndexedTriangles> for IndexedPolygons {
+    fn from(triangles: IndexedTriangles) -> Self {
+        let starts = (0..=triangles.face_total() as u32).map(|face| face * 3).collect();
+        let vertex_count = triangles.vertex_total() as u32;
+        Self { vertex_count, starts, corners: triangles.into_triangles().into_flattened() }
+    }
+}
+
 /// Exact where every face is a triangle; the error names the first that is not.
 impl TryFrom<&IndexedPolygons> for IndexedTriangles {
     type Error = StructureError;
@@ -141,6 +150,11 @@ impl FaceList for IndexedPolygons {
     }
 
     fn face_of(&self, corner: u32) -> u32 {
+        // Where all faces have the same number of corners the first guess is right.
+        let guess = (u64::from(corner) * self.face_total() as u64 / self.corners.len() as u64) as u32;
+        if self.corner_range(guess).contains(&(corner as usize)) {
+            return guess;
+        }
         // The last face that starts at or before the corner; no face is empty.
         self.starts.partition_point(|&start| start <= corner) as u32 - 1
     }
