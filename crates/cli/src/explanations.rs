@@ -31,6 +31,33 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "E-distance-sample",
         "A sample of a shape has a position that is not finite, or a weight, a radius or a distance to the other shape that is negative or not finite. The message names the sample by its number.",
     ),
+    (
+        "E-edit-border",
+        "The operator would close a border or make it touch itself, or it needs faces on both sides of an edge that lies on the border. Choose another edge, or fill the hole first.",
+    ),
+    (
+        "E-edit-corners",
+        "The operator needs triangles beside the edge, or two corners of one face that are not neighbours. Triangulate the faces first.",
+    ),
+    (
+        "E-edit-duplicate",
+        "The operator would make a second edge between the same vertices, or a second face with the same corners.",
+    ),
+    ("E-edit-fold", "A face would turn over, or lose its area. Choose another place, or allow larger turns."),
+    (
+        "E-edit-full",
+        "The mesh has as many elements as numbers of 32 bits can tell apart. Compact it, which frees the numbers of deleted elements.",
+    ),
+    (
+        "E-edit-gone",
+        "An operator on a mesh was given an element that is not there, or was deleted. Numbers of deleted elements are not used again; find the element anew.",
+    ),
+    (
+        "E-edit-link",
+        "Collapsing, joining or removing here would glue parts of the surface together that only an edge or vertex should join (link condition). Choose another edge, or split an edge near it first.",
+    ),
+    ("E-edit-manifold", "Lists of triangles can be edited only where at most two triangles meet in an edge."),
+    ("E-edit-valence", "The vertex has too few edges to be removed: no face would be left."),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),

@@ -483,13 +483,13 @@ mod tests {
         let edge = mesh.connectivity().edge(edge);
         let on_edge = mesh.split_edge(edge, DVec3::X).unwrap();
         assert_eq!(on_edge, VertexId(3));
-        // A split at (1, 1) of the triangle 0, 3, 2 or 3, 1, 2: a quarter of the first, or inside the second.
-        let in_face = mesh.split_face(FaceId(0), DVec3::new(1.5, 1.0, 0.0)).unwrap();
+        // Inside the triangle 3, 1, 2, with different weights of all three.
+        let in_face = mesh.split_face(FaceId(0), DVec3::new(2.0, 1.0, 0.0)).unwrap();
         let (result, losses) = mesh.to_triangles(&Exec::default()).unwrap();
         let color = result.attribute(Domain::Vertex, COLOR).unwrap();
         assert_eq!((color.number(3, 0), result.positions()[3]), (2.0, DVec3::X));
         // Linear: 2 a unit along x, 4 a unit along y.
-        assert!((color.number(in_face.index(), 0) - 7.0).abs() < 1e-14);
+        assert!((color.number(in_face.index(), 0) - 8.0).abs() < 1e-14);
         let normals = result.attribute(Domain::Vertex, NORMAL).unwrap();
         assert_eq!(normals.vector(2), DVec3::X * 0.5, "an untouched value keeps its bits");
         assert!((normals.vector(in_face.index()).length() - 1.0).abs() < 1e-15);
@@ -559,6 +559,73 @@ mod tests {
         let edge = mesh.connectivity().edge(half);
         mesh.flip_edge(edge).unwrap();
         assert!(matches!(mesh.flip_edge(edge), Err(Illegal::FoldsOver { .. })));
+    }
+
+    #[test]
+    fn parts_of_a_face_have_its_attributes() {
+        let mut mesh = EditableMesh::try_from(&grid()).unwrap();
+        let inner = mesh.connectivity().live_edges().filter(|&edge| !mesh.connectivity().is_border_edge(edge));
+        let edge = inner.last().unwrap();
+        let [a, b] = mesh.connectivity().ends(edge).map(|end| mesh.positions()[end.index()]);
+        let mut beside: Vec<u32> =
+            mesh.connectivity().halves(edge).map(|half| mesh.connectivity().face(half).unwrap().0).to_vec();
+        let vertex = mesh.split_edge(edge, (a + b) / 2.0).unwrap();
+        let parts: Vec<usize> =
+            mesh.connectivity().around_vertex(vertex).map(|h| mesh.connectivity().face(h).unwrap().index()).collect();
+        let (result, _) = mesh.to_triangles(&Exec::default()).unwrap();
+        let labels = result.attribute(Domain::Face, "face").unwrap();
+        let mut found: Vec<u32> = parts.iter().map(|&face| labels.number(face, 0) as u32).collect();
+        found.sort_unstable();
+        beside.extend_from_within(..);
+        beside.sort_unstable();
+        assert_eq!(found, beside);
+        // Each part lies inside the face whose label it has.
+        let source = grid();
+        for (face, &label) in parts.iter().zip(&parts.iter().map(|&f| labels.number(f, 0) as usize).collect::<Vec<_>>())
+        {
+            let center = result.corners(*face).iter().sum::<DVec3>() / 3.0;
+            let [p, q, r] = source.corners(label);
+            assert!([[p, q], [q, r], [r, p]].iter().all(|[a, b]| (*b - *a).cross(center - *a).z > 0.0));
+        }
+    }
+
+    #[test]
+    fn holes_avoid_edges_that_are_there_and_refuse_what_would_fold() {
+        // A vertex in a quadrilateral, one diagonal of which is an edge of another face.
+        let faces = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [2, 1, 3]];
+        let mesh = |places: [(f64, f64); 5]| {
+            let positions = places.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+            EditableMesh::try_from(&TriMesh::try_new(positions, faces.clone()).unwrap()).unwrap()
+        };
+        let mut convex = mesh([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 0.5)]);
+        convex.remove_vertex(VertexId(4), Hole::Triangles).unwrap();
+        assert_eq!(convex.connectivity().validate(), []);
+        assert!(convex.connectivity().find(VertexId(0), VertexId(2)).is_some());
+        // Concave: the diagonal that is left lies outside.
+        let mut arrow = mesh([(2.0, 1.0), (0.0, 0.0), (2.0, -1.0), (0.5, 0.0), (0.3, 0.0)]);
+        let refused = arrow.remove_vertex(VertexId(4), Hole::Triangles);
+        assert!(matches!(refused, Err(Illegal::FoldsOver { .. })), "{refused:?}");
+        assert!(arrow.remove_vertex(VertexId(4), Hole::Polygon).is_ok());
+    }
+
+    #[test]
+    fn a_face_may_get_area_by_a_collapse_but_not_lose_it() {
+        let faces = vec![[0, 1, 2], [1, 3, 2], [1, 4, 3]];
+        let mesh = |x: f64, y: f64| {
+            let places = [(0.0, 0.0), (x, y), (0.0, 1.0), (1.0, 1.0), (2.0, 0.0)];
+            let positions = places.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+            EditableMesh::try_from(&TriMesh::try_new(positions, faces.clone()).unwrap()).unwrap()
+        };
+        let (good, flat) = (DVec3::X, DVec3::new(0.5, 1.0, 0.0));
+        let edge =
+            |mesh: &EditableMesh| mesh.connectivity().edge(mesh.connectivity().find(VertexId(0), VertexId(1)).unwrap());
+        let mut sound = mesh(1.0, 0.0);
+        let face = FaceId(1);
+        assert_eq!(sound.collapse_edge(edge(&sound), flat), Err(Illegal::FoldsOver { face }));
+        assert!(sound.collapse_edge(edge(&sound), good * 0.75).is_ok());
+        let mut without = mesh(0.5, 1.0);
+        assert!(without.clone().collapse_edge(edge(&without), flat).is_ok());
+        assert!(without.collapse_edge(edge(&without), good).is_ok());
     }
 
     #[test]
