@@ -90,7 +90,7 @@ fn surface(faces: &Faces) -> Option<Kind> {
         }
     }
     let mut kinds: BTreeMap<u32, (i64, usize)> = BTreeMap::new();
-    for (_, &component) in &of {
+    for &component in of.values() {
         kinds.entry(component).or_default().0 += 1;
     }
     for [a, _] in edges.keys() {
