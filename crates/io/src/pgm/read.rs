@@ -233,6 +233,7 @@ mod tests {
             (b"P5 2 2\n\n65536\n", "E-pgm-maxval", Place::line(3)),
             (b"P5 2 2 255", "E-pgm-truncated", Place::Byte(10)),
             (b"P5 2 2 9 1\x0a11", "E-pgm-value", Place::Byte(9)),
+            (b"P5 2 2 9 \x09\x09\x0a\x09", "E-pgm-value", Place::Byte(11)),
             (b"P2 2 2 9 1 2 3\n10", "E-pgm-value", Place::line(2)),
             (b"P2 2 2 9 1 2 x 3", "E-pgm-number", Place::line(1)),
             (b"P2 2 2 9 1 2 3", "E-pgm-truncated", Place::Byte(14)),

@@ -259,6 +259,20 @@ fn defects_are_told_with_their_chunk() {
         assert_eq!((fault.code, fault.within.as_deref()), (code, Some(within)), "{error}");
         assert!(matches!(fault.place, Place::Byte(_)) && error.advice().is_some(), "{error}");
     }
+    // One bit of a sum: of what is needed, and of what is not.
+    let patched = |mut bytes: Vec<u8>, kind: &[u8]| {
+        let at = bytes.windows(4).position(|found| found == kind).unwrap();
+        let length = u32::from_be_bytes([0, 0, bytes[at - 2], bytes[at - 1]]) as usize;
+        bytes[at + 4 + length] ^= 1;
+        read_high(&bytes, 1.0)
+    };
+    for kind in [&b"IHDR"[..], b"IDAT", b"IEND"] {
+        let error = patched(sound.clone(), kind).unwrap_err();
+        let wanted = format!("chunk {}", String::from_utf8_lossy(kind));
+        assert_eq!((error.code(), error.fault().unwrap().within.clone()), ("E-png-checksum", Some(wanted)));
+    }
+    let (calibrated, _) = written(&Shape::new(Part::new(hills())));
+    assert_eq!(codes(&patched(calibrated, b"pCAL").unwrap()), ["W-png-checksum"]);
     let mut trailing = sound.clone();
     trailing.extend(b"more");
     assert_eq!(codes(&read_high(&trailing, 1.0).unwrap()), ["W-png-trailing"]);

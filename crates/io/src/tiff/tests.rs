@@ -134,6 +134,14 @@ fn tags_of_places_are_heeded() {
     assert_eq!(field.sample(2, 0), Some(DVec3::new(500_075.0, 4_999_970.0, 10.0)));
     assert_eq!(field.sample(1, 1), None);
     assert_eq!(codes(&read), ["W-heights-holes"]);
+    // The tag is in decimals of another length than the samples; the place is told by another pixel.
+    let data = [0.25f32, -3.4e38, 1.0, 2.0, 3.0, 4.0];
+    let inner: (u16, &[f64]) = (33922, &[1.0, 1.0, 0.0, 500_030.0, 4_999_980.0, 0.0]);
+    let no_data = Some("-3.39999999999999996e+38");
+    let floats = plain(&encoded::<Gray32Float>(&data, Compression::Uncompressed, &[scale, inner], no_data));
+    let floats = HeightField::from_geometry(&floats.shape.parts[0].geometry).unwrap().clone();
+    assert_eq!((floats.placement(), floats.sample(1, 1)), (field.placement(), None));
+    assert_eq!(floats.sample(0, 1), Some(DVec3::new(500_015.0, 4_999_990.0, 0.25)));
     // Samples of a file that says where it is are heights, unless an option makes them a picture.
     let said = encoded::<Gray16>(&[5, 6, 7, 8, 9, 65535], Compression::Uncompressed, &[scale], None);
     assert_eq!(rows(&plain(&said))[5], 65535.0);
