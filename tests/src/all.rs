@@ -36,6 +36,7 @@ mod mutations;
 mod oracles;
 mod orientation;
 mod peer_gltf;
+mod plane;
 mod properties;
 mod query_laws;
 mod regressions;

@@ -34,7 +34,7 @@ fn every_task_prints_lines_of_json() {
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
         let lines = String::from_utf8(out).expect("UTF-8");
         let expected = match task {
-            Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge => 1,
+            Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge | Task::Delaunay2d => 1,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
             Task::Closest | Task::Onering | Task::Heightfield => 2,
             Task::Read | Task::Write | Task::Rays => 5,

@@ -50,7 +50,7 @@ fn formats_are_documented_from_their_table() {
 fn the_conversion_matrix_is_the_registry() {
     let mut page = String::from(
         "# The conversion matrix\n\nMade from the registry by the tests; `shapeloom graph` prints the same. Rows convert \
-         into columns.\n\n| from \\ to |",
+         into columns. In italics what is done only where it is named with `--method`.\n\n| from \\ to |",
     );
     for kind in Kind::ALL {
         let _ = write!(page, " {kind} |");
@@ -63,7 +63,10 @@ fn the_conversion_matrix_is_the_registry() {
             let names: Vec<String> = registry()
                 .iter()
                 .filter(|converter| converter.from == from && converter.to == to)
-                .map(|converter| format!("[{}](algorithms/{}.md)", converter.name, converter.name.replace('-', "_")))
+                .map(|converter| {
+                    let link = format!("[{}](algorithms/{}.md)", converter.name, converter.name.replace('-', "_"));
+                    if converter.only_by_name { format!("*{link}*") } else { link }
+                })
                 .collect();
             let _ = write!(page, " {} |", names.join(", "));
         }

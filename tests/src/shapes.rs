@@ -8,7 +8,7 @@ use shapeloom::mesh::{Column, Domain, GeometricGraph, HeightField, PointCloud, P
 use shapeloom::parametric::{BezierCurve, BezierPatch, BezierSurface};
 use shapeloom::shape::{Geometry, Kind};
 
-use crate::support::data;
+use crate::support::{Dice, data};
 
 /// Newell's teapot from data/.
 pub fn teapot() -> Geometry {
@@ -49,6 +49,40 @@ pub fn letter() -> GeometricGraph {
     GeometricGraph::try_new(positions, vec![[0, 1], [1, 2], [3, 1]]).expect("edges between vertices that exist")
 }
 
+/// Points of a hilly country, some of them over the same place.
+pub fn scattered() -> PointCloud {
+    let mut dice = Dice(31);
+    let mut points: Vec<DVec3> = (0..400)
+        .map(|_| {
+            let (x, y) = (4.0 * dice.unit(), 3.0 * dice.unit());
+            DVec3::new(x, y, (2.0 * x).sin() * y.cos())
+        })
+        .collect();
+    points.extend([points[3] + DVec3::Z, points[4]]);
+    let mut cloud = PointCloud::new(points);
+    cloud.insert_attribute(Column::labels("tag", (0..402).collect())).expect("a label for each");
+    cloud
+}
+
+/// A closed line that crosses itself.
+pub fn pentagram() -> Polyline {
+    let corner = |k: u32| DVec2::from_angle(0.8 * std::f64::consts::PI * f64::from(k));
+    Polyline::new((0..5).map(|k| corner(k).extend(1.0)).collect(), true)
+}
+
+/// Streets that cross at different heights, meet and overlap.
+pub fn crossroads() -> GeometricGraph {
+    let streets = (0..12u32).flat_map(|k| {
+        let (along, across) = (f64::from(k % 6), f64::from(k % 4) * 0.1);
+        match k < 6 {
+            true => [DVec3::new(along, -1.0, 0.0), DVec3::new(along + across, 6.0, 1.0)],
+            false => [DVec3::new(-1.0, along, 0.5), DVec3::new(6.0, along - across, 0.2)],
+        }
+    });
+    let edges = (0..12).map(|k| [2 * k, 2 * k + 1]).chain([[0, 2], [0, 1]]).collect();
+    GeometricGraph::try_new(streets.collect(), edges).expect("edges between vertices that exist")
+}
+
 /// A closed polygon mesh with labels on every kind of element.
 pub fn tagged_polygons() -> PolyMesh {
     let mut mesh = Cylinder { segments: 24, ..Cylinder::new() }.mesh(&Exec::default()).expect("a small cylinder").value;
@@ -82,15 +116,27 @@ pub fn tagged_triangles() -> TriMesh {
 pub fn of_kind(kind: Kind) -> Vec<(&'static str, Geometry)> {
     let cube = || Platonic::new(Solid::Dodecahedron).mesh(&Exec::default()).expect("a dodecahedron").value;
     match kind {
-        Kind::PointCloud => vec![("points", PointCloud::new(vec![DVec3::ZERO, DVec3::ONE]).into())],
+        Kind::PointCloud => vec![
+            ("points", PointCloud::new(vec![DVec3::ZERO, DVec3::ONE]).into()),
+            ("scattered points", scattered().into()),
+            ("nothing", PointCloud::default().into()),
+        ],
         Kind::BezierCurve => vec![("curve", curve().into())],
         Kind::BezierSurface => vec![
             ("teapot", teapot()),
             ("bent patch", BezierSurface::new(vec![bent_patch()]).into()),
             ("nothing", BezierSurface::default().into()),
         ],
-        Kind::Polyline => vec![("polyline", Polyline::new(vec![DVec3::ZERO, DVec3::X, DVec3::ONE], true).into())],
-        Kind::GeometricGraph => vec![("letter Y", letter().into())],
+        Kind::Polyline => vec![
+            ("polyline", Polyline::new(vec![DVec3::ZERO, DVec3::X, DVec3::ONE], true).into()),
+            ("pentagram", pentagram().into()),
+            ("nothing", Polyline::default().into()),
+        ],
+        Kind::GeometricGraph => vec![
+            ("letter Y", letter().into()),
+            ("crossroads", crossroads().into()),
+            ("nothing", GeometricGraph::default().into()),
+        ],
         Kind::HeightField => vec![("hills", hills().into())],
         Kind::PolyMesh => vec![
             ("tagged cylinder", tagged_polygons().into()),

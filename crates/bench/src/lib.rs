@@ -4,6 +4,7 @@
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
 mod closest;
+mod delaunay2d;
 mod files;
 mod half_edges;
 mod hausdorff;
@@ -85,6 +86,8 @@ pub enum Task {
     Onering,
     /// A terrain made by formula to triangles: regular, and adaptive.
     Heightfield,
+    /// The Delaunay triangulation of the points of pts2d.f64 (else of a formula).
+    Delaunay2d,
 }
 
 impl Task {
@@ -117,6 +120,7 @@ impl Task {
                 let size = if last([':', ' ']) == "near" { "near_1m" } else { "box_100k" };
                 names(&format!("j.closest_{size}"), &[".query", ".build+query", ".t1", ".tall"])
             }
+            Self::Delaunay2d => vec!["k.delaunay2d_1m".into(), "k.delaunay2d_1m.f32".into()],
             Self::SelfIntersection => vec!["j.self_intersection".into()],
             Self::Winding | Self::SignedDistance => {
                 let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
@@ -185,6 +189,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Halfedge => half_edges::build(&setting).map(|outcome| vec![outcome]),
         Task::Onering => half_edges::sweep(&setting),
         Task::Heightfield => heightfield::run(&setting),
+        Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

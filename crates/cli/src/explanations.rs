@@ -101,6 +101,11 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-plan-no-way", "No chain of converters leads from what the input holds to what the output format can hold."),
     ("E-plan-off-the-way", "The converter named with --method does not fit between the input and the output."),
     ("E-plan-option", "No converter on the way has the option given with --set."),
+    (
+        "E-plane-crossing",
+        "Edges or loops cross, and crossings=refuse asks for that to be an error. crossings=split cuts them where they cross.",
+    ),
+    ("E-plane-edge", "An edge could not be put into a triangulation. Please report the shape."),
     ("E-ray-direction", "A ray has a direction without a length, or coordinates that are not finite."),
     ("E-render-count", "There are more triangles or positions in a picture than 32-bit ids can tell apart."),
     ("E-render-empty", "There is no triangle to draw."),
@@ -270,7 +275,54 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-planarize-polygons",
         "Polygons of more than four corners are not made flat: only quadrilaterals are. Cut them into quadrilaterals or triangles first.",
     ),
+    (
+        "W-plane-collinear",
+        "All points lie on one line of the plane in which they were to be triangulated, so there is no triangle. Another plane may do: plane=xz, plane=yz, plane=fit.",
+    ),
+    (
+        "W-plane-crossing",
+        "Edges or sides of loops cross; both were split at a new vertex, rounded to the nearest numbers. crossings=refuse makes it an error.",
+    ),
+    ("W-plane-duplicate", "Several points have the same position; the first was kept, with its attributes."),
+    (
+        "W-plane-earcut",
+        "Loops that cross or touch, or of more than 4096 points, are not for earcut; they were triangulated by constrained Delaunay.",
+    ),
+    (
+        "W-plane-empty",
+        "The edges enclose nothing, so no triangle was kept. keep=everything keeps all within the convex hull.",
+    ),
+    (
+        "W-plane-height",
+        "Several points lie over the same place of the plane at different heights; the first was kept. Another plane may tell them apart: plane=xz, plane=yz, plane=fit.",
+    ),
+    ("W-plane-open", "A line that is not closed was closed by a straight side to bound a region."),
+    ("W-plane-outside", "Points that are no corner of a triangle that is kept were left out."),
+    ("W-plane-overlap", "An edge runs over another one; the part that they share counts once."),
+    ("W-plane-point", "An edge has no length in the plane of the triangulation; it was left out."),
+    ("W-plane-through", "An edge passes through a vertex; it was split there."),
+    (
+        "W-plane-tiny",
+        "Coordinates are so small beside the largest that their products are no numbers; they were taken as 0 in deciding what lies where. Positions are unchanged.",
+    ),
     ("W-polygon-simple", "A polygon crosses itself or has no area; it was cut into triangles as well as possible."),
+    (
+        "W-refine-angle",
+        "Edges of the source meet in a smaller angle than was wanted; the triangles between them stay sharp.",
+    ),
+    (
+        "W-refine-blocked",
+        "Triangles stay smaller in angle or larger in area than wanted, because edges must not be split. split_edges=true allows it.",
+    ),
+    (
+        "W-refine-flat",
+        "Points off the straight border of the hull by rounding alone make triangles that no vertices could make better; these were left out before refining.",
+    ),
+    (
+        "W-refine-limit",
+        "The refinement used up the vertices that it may add before all triangles were as wanted. Raise max_added, or ask for a smaller angle or larger area.",
+    ),
+    ("W-refine-small", "Triangles as small as the rounding of their coordinates stay as they are."),
 ];
 
 /// Every code with its meaning.

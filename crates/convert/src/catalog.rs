@@ -2,8 +2,9 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    Compact, GreedyInsertion, HeightField, OrientFaces, PlanarizeQuads, PolyMesh, TriMesh, TriangulateHeightField,
-    TriangulatePolygons, VertexNormals, Weld,
+    Compact, ConstrainedDelaunay, DelaunayTriangulation, GeometricGraph, GreedyInsertion, HeightField, OrientFaces,
+    PlanarizeQuads, PointCloud, PolyMesh, Polyline, TriMesh, TriangulateHeightField, TriangulatePolygons,
+    TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -18,6 +19,9 @@ pub fn catalog() -> Vec<Converter> {
         entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
         entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
+        entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
+        entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),
+        entry::<TriangulateRegion, Polyline>(Effect::Reported).only_by_name(),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),

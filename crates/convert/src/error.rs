@@ -16,6 +16,8 @@ pub enum PlanError {
         to: Vec<Kind>,
         /// What can be reached instead.
         reachable: Vec<Kind>,
+        /// Converters that lead there, but are used only where they are named.
+        by_name: Vec<&'static str>,
     },
     /// No converter has that name.
     UnknownMethod {
@@ -53,11 +55,16 @@ fn list<T: fmt::Display>(items: &[T]) -> String {
 impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoWay { from, to, reachable } if reachable.is_empty() => {
-                write!(f, "found no way from {from} to {}: no converter makes another kind from a {from} yet", list(to))
-            }
-            Self::NoWay { from, to, reachable } => {
-                write!(f, "found no way from {from} to {}, only to {}", list(to), list(reachable))
+            Self::NoWay { from, to, reachable, by_name } => {
+                write!(f, "found no way from {from} to {}", list(to))?;
+                match (reachable.is_empty(), by_name.is_empty()) {
+                    (true, true) => write!(f, ": no converter makes another kind from a {from} yet"),
+                    (true, false) => write!(f, ", only, where it is named, through {}", list(by_name)),
+                    (false, true) => write!(f, ", only to {}", list(reachable)),
+                    (false, false) => {
+                        write!(f, ", only to {} and, where it is named, through {}", list(reachable), list(by_name))
+                    }
+                }
             }
             Self::UnknownMethod { found, known } => {
                 write!(f, "found method \"{found}\", expected one of {}", list(known))
@@ -95,6 +102,12 @@ impl Diagnostic for PlanError {
     }
 
     fn advice(&self) -> Option<String> {
-        matches!(self, Self::NoWay { .. }).then(|| "`shapeloom graph` lists every converter".into())
+        match self {
+            Self::NoWay { by_name, .. } => Some(match by_name.first() {
+                Some(name) => format!("say --method {name}; `shapeloom graph` tells what it makes of the shape"),
+                None => "`shapeloom graph` lists every converter".into(),
+            }),
+            _ => None,
+        }
     }
 }

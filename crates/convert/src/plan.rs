@@ -39,7 +39,7 @@ impl Plan {
 }
 
 /// The shortest way from a kind that does what is wished; between ways of equal length the one whose converters stand
-/// first in the registry.
+/// first in the registry. Converters that are [`only_by_name`](Converter::only_by_name) are on it only where they are named.
 ///
 /// # Errors
 /// There is no such way, or no converter of that name.
@@ -58,7 +58,10 @@ pub fn plan(from: Kind, wish: &Wish) -> Result<Plan, PlanError> {
         steps.push(method);
         at = method.to;
     }
-    let no_way = |from: Kind, to: &[Kind]| PlanError::NoWay { from, to: to.to_vec(), reachable: reachable(from) };
+    let no_way = |from: Kind, to: &[Kind]| {
+        let (to, reachable, by_name) = (to.to_vec(), reachable(from), by_name(from, to));
+        PlanError::NoWay { from, to, reachable, by_name }
+    };
     if let Some(via) = wish.via
         && !steps.iter().any(|step| step.to == via)
         && at != via
@@ -101,7 +104,7 @@ fn shortest(from: Kind, targets: &[Kind]) -> Option<Vec<&'static Converter>> {
     let mut depth = vec![0];
     while let Some(index) = queue.pop_front() {
         let at = reached[index].0;
-        for step in registry().iter().filter(|step| step.from == at) {
+        for step in registry().iter().filter(|step| step.from == at && !step.only_by_name) {
             if reached.iter().any(|(kind, _)| *kind == step.to) {
                 continue;
             }
@@ -125,6 +128,12 @@ fn shortest(from: Kind, targets: &[Kind]) -> Option<Vec<&'static Converter>> {
     Some(steps)
 }
 
+/// The converters that would lead there if they were named.
+fn by_name(from: Kind, to: &[Kind]) -> Vec<&'static str> {
+    let leads = |step: &&Converter| shortest(from, &[step.from]).is_some() && shortest(step.to, to).is_some();
+    registry().iter().filter(|step| step.only_by_name).filter(leads).map(|step| step.name).collect()
+}
+
 /// The kinds that can be made from one, itself left out.
 fn reachable(from: Kind) -> Vec<Kind> {
     Kind::ALL.into_iter().filter(|&kind| kind != from && shortest(from, &[kind]).is_some()).collect()
@@ -133,6 +142,7 @@ fn reachable(from: Kind) -> Vec<Kind> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shapeloom_core::Diagnostic;
 
     fn names(plan: &Plan) -> Vec<&'static str> {
         plan.steps.iter().map(|step| step.name).collect()
@@ -166,10 +176,28 @@ mod tests {
         );
     }
 
+    /// Triangles between scattered points are one reading of them among others.
+    #[test]
+    fn readings_of_a_shape_are_taken_only_where_they_are_named() {
+        for (kind, name) in [
+            (Kind::PointCloud, "delaunay-triangulation"),
+            (Kind::GeometricGraph, "constrained-delaunay"),
+            (Kind::BezierCurve, "triangulate-region"),
+        ] {
+            let error = plan(kind, &Wish::to([Kind::TriMesh])).unwrap_err();
+            assert!(error.to_string().contains(name), "{error}");
+            assert!(error.advice().is_some_and(|advice| advice.contains(&format!("--method {name}"))), "{kind}");
+            let wish = Wish { method: Some(name.into()), ..Wish::to([Kind::TriMesh]) };
+            assert_eq!(names(&plan(kind, &wish).unwrap()).last(), Some(&name));
+        }
+    }
+
     #[test]
     fn where_no_way_leads_the_error_says_what_can_be_reached() {
         let error = plan(Kind::BezierCurve, &Wish::to([Kind::TriMesh])).unwrap_err();
-        assert_eq!(error.to_string(), "found no way from bezier-curve to tri-mesh, only to polyline");
+        let wanted = "found no way from bezier-curve to tri-mesh, only to polyline and, where it is named, through \
+                      triangulate-region";
+        assert_eq!(error.to_string(), wanted);
         let wish = Wish { method: Some("tessellate-curve".into()), ..Wish::to([Kind::TriMesh]) };
         assert!(matches!(plan(Kind::TriMesh, &wish), Err(PlanError::MethodOffTheWay { .. })));
         let wish = Wish { method: Some("magic".into()), ..Wish::to([Kind::TriMesh]) };

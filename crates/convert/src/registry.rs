@@ -33,6 +33,9 @@ pub struct Converter {
     pub to: Kind,
     /// What it does to the geometry.
     pub effect: Effect,
+    /// Whether it is used only where it is named, because what it makes is one reading of its source among others:
+    /// triangles between scattered points.
+    pub only_by_name: bool,
     /// The name of the struct that implements it.
     pub type_name: &'static str,
     summary: fn() -> String,
@@ -45,6 +48,13 @@ type RunFn = fn(&Geometry, &Request<'_>, &Exec) -> Result<Converted<Geometry>, C
 type SettleFn = fn(&Geometry, &Request<'_>) -> Result<Vec<(&'static str, OptionValue)>, ConvertError>;
 
 impl Converter {
+    /// The same, left out of ways on which it is not named.
+    #[must_use]
+    pub(crate) fn only_by_name(mut self) -> Self {
+        self.only_by_name = true;
+        self
+    }
+
     /// What it does, in a sentence or two.
     pub fn summary(&self) -> String {
         (self.summary)()
@@ -129,6 +139,7 @@ where
         from: S::KIND,
         to: <C::Output as Representation>::KIND,
         effect,
+        only_by_name: false,
         type_name: path.rsplit("::").next().unwrap_or(path),
         summary: C::summary,
         specs: C::specs,

@@ -74,7 +74,8 @@ pub fn convert_shape(shape: &Shape, job: &Job, exec: &Exec) -> Result<Conversion
     let mut losses = Vec::new();
     let mut left_out = vec![false; shape.parts.len()];
     let anywhere = Wish::to(job.wish.targets.clone());
-    let reaches = |part: &Part| plan(part.geometry.kind(), &anywhere).is_ok();
+    // A method that is named may lead where nothing else does.
+    let reaches = |part: &Part| [&anywhere, &job.wish].iter().any(|wish| plan(part.geometry.kind(), wish).is_ok());
     let some_arrive = shape.parts.iter().any(reaches);
     for (index, part) in shape.parts.iter().enumerate() {
         if some_arrive && !reaches(part) {

@@ -2,15 +2,15 @@
 //!
 //! - [`TriMesh`] and [`PolyMesh`]: indexed faces with attribute columns on vertices, faces and wedges (the corners of
 //!   faces).
-//! - [`Polyline`], [`GeometricGraph`], [`HeightField`], [`QuadGrid`], [`PointCloud`].
+//! - [`Polyline`], [`GeometricGraph`], [`HeightField`], [`QuadGrid`], [`PointCloud`], [`PlanarRegion`].
 //! - [`Column`], [`ListColumn`], [`Attributes`], [`Origins`] and [`carry`]: attributes of any name, moved through every
 //!   operation by one function, or their loss reported.
-//! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`],
-//!   [`TriangulatePolygons`], [`OrientFaces`], [`TriangulateHeightField`].
+//! - Operations, each a [`Convert`](shapeloom_core::Convert) value: [`Weld`], [`VertexNormals`], [`OrientFaces`],
+//!   [`TriangulatePolygons`], [`TriangulateHeightField`], [`GreedyInsertion`], [`PlanarizeQuads`], [`Compact`]; in a plane, on
+//!   exact signs, [`DelaunayTriangulation`] of scattered points, [`ConstrainedDelaunay`] of points and edges,
+//!   [`TriangulateRegion`] of loops with holes.
 //! - [`structures`]: ways to store connectivity behind one interface, and converters between them.
 //! - [`EditableMesh`]: flips, splits and collapses of constant time, with positions and attributes.
-//!   [`TriangulatePolygons`], [`TriangulateHeightField`], [`GreedyInsertion`],
-//!   [`PlanarizeQuads`], [`Compact`].
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
@@ -32,6 +32,7 @@ mod mesh_attributes;
 mod normals;
 mod orient_faces;
 mod planarize_quads;
+mod plane;
 mod point_cloud;
 mod poly_mesh;
 mod polyline;
@@ -59,6 +60,10 @@ pub use mesh_attributes::MeshAttributes;
 pub use normals::{face_normals, newell_vector, triangle_normal};
 pub use orient_faces::{OrientFaces, Outside};
 pub use planarize_quads::PlanarizeQuads;
+pub use plane::{
+    ConstrainedDelaunay, Crossings, DelaunayTriangulation, KeptTriangles, PlanarRegion, PlaneError, ProjectionPlane,
+    RegionMethod, TriangulateRegion,
+};
 pub use point_cloud::PointCloud;
 pub use poly_mesh::PolyMesh;
 pub use polyline::Polyline;

@@ -22,6 +22,7 @@ pub(crate) fn run(arguments: &GraphArguments, session: &mut Session<'_>) -> Resu
                     "name": converter.name,
                     "from": converter.from.name(),
                     "to": converter.to.name(),
+                    "only_by_name": converter.only_by_name,
                     "summary": converter.summary(),
                     "options": converter.specs().iter().map(account::option_spec).collect::<Vec<_>>(),
                 })
@@ -43,7 +44,9 @@ pub(crate) fn run(arguments: &GraphArguments, session: &mut Session<'_>) -> Resu
         return session.print(text);
     }
     for converter in registry() {
-        let _ = writeln!(text, "{}: {} -> {}", converter.name, converter.from, converter.to);
+        let when =
+            if converter.only_by_name { format!(", only by --method {}", converter.name) } else { String::new() };
+        let _ = writeln!(text, "{}: {} -> {}{when}", converter.name, converter.from, converter.to);
         let _ = writeln!(text, "  {}", converter.summary());
         for spec in converter.specs() {
             let default = spec.default.as_ref().map_or("from the tolerance".to_owned(), ToString::to_string);
