@@ -42,7 +42,7 @@ fn outlines(count: usize) -> Vec<(&'static str, Vec<DVec2>)> {
     let half = count / 2;
     let arm = |k: usize, width: f64| at(1e9 * (0.1 + k as f64 / half as f64) - width, k, 10.0);
     let spiral = (0..half).map(|k| arm(k, 0.0)).chain((0..half).rev().map(|k| arm(k, 2e7))).collect();
-    let tooth = |k: usize| DVec2::new(k as f64 * 1000.0, if k % 2 == 0 { 1.0 } else { 1e7 });
+    let tooth = |k: usize| DVec2::new(k as f64 * 1000.0, if k.is_multiple_of(2) { 1.0 } else { 1e7 });
     let comb = (0..count - 2).map(tooth).chain([DVec2::new(count as f64 * 1e3, 0.0), DVec2::ZERO]);
     // Counter-clockwise.
     let mut comb: Vec<DVec2> = comb.collect();
@@ -57,7 +57,7 @@ fn stars_spirals_and_combs_are_covered_exactly() {
         for (name, points) in outlines {
             let wanted = twice_loop(&points);
             for method in METHODS {
-                let converted = by(method).convert(&region(&[points.clone()])).unwrap();
+                let converted = by(method).convert(&region(std::slice::from_ref(&points))).unwrap();
                 let other_way = u64::from(method == RegionMethod::Earcut && count > 4096);
                 let findings = &converted.report.findings;
                 assert_eq!(findings.iter().count() as u64, other_way, "{name} {count}: {findings:?}");
@@ -177,7 +177,7 @@ fn repeated_points_and_straight_runs_are_no_trouble() {
     for outline in [&points[..], &spike[..]] {
         let outline: Vec<DVec2> = outline.iter().copied().map(DVec2::from).collect();
         for method in METHODS {
-            let converted = by(method).convert(&region(&[outline.clone()])).unwrap();
+            let converted = by(method).convert(&region(std::slice::from_ref(&outline))).unwrap();
             is_sound(&converted.value);
             assert_eq!(converted.value.area(), 16.0, "{method:?}");
         }
