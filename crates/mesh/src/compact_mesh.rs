@@ -50,7 +50,8 @@ pub struct CompactMesh {
     vertices: u32,
     triangles: u32,
     lowest: DVec3,
-    step: DVec3,
+    /// Half, because a step of one bit across all numbers is none.
+    half_step: DVec3,
     coordinates: Vec<u64>,
     indices: Vec<u64>,
 }
@@ -106,7 +107,7 @@ impl Compact {
             vertices: vertices as u32,
             triangles: triangles as u32,
             lowest,
-            step: highest / most - lowest / most,
+            half_step: highest * 0.5 / most - lowest * 0.5 / most,
             coordinates: vec![0; sizes[0] as usize],
             indices: vec![0; sizes[1] as usize],
         };
@@ -119,7 +120,7 @@ impl Compact {
             // Halves, because the difference of two numbers may be none.
             let from_lowest = position * 0.5 - lowest * 0.5;
             for axis in 0..3 {
-                let step = made.step[axis] * 0.5;
+                let step = made.half_step[axis];
                 let steps = if step > 0.0 { (from_lowest[axis] / step).round().clamp(0.0, most) } else { 0.0 };
                 write(&mut made.coordinates, 3 * vertex as u64 + axis as u64, self.bits, steps as u64);
             }
@@ -155,7 +156,7 @@ impl Compact {
             let lists = attributes.lists().iter().map(|list| format!("{domain} list \"{}\"", list.name()));
             report.losses.extend(names.chain(lists).map(|what| Loss::new(what, "a compact store has no attributes")));
         }
-        report.figure("half_step_diagonal", length(made.step * 0.5));
+        report.figure("half_step_diagonal", length(made.half_step));
         report.figure("bits_a_vertex", made.bits_stored() as f64 / vertices.max(1) as f64);
         report.figure("bytes", made.memory_bytes() as f64);
         let before = size_of_val(source.positions()) + size_of_val(source.triangles());
@@ -201,12 +202,13 @@ impl CompactMesh {
 
     /// How far apart neighbouring positions are along each axis.
     pub fn step(&self) -> DVec3 {
-        self.step
+        self.half_step * 2.0
     }
 
     fn unpacked(&self, vertex: u64) -> DVec3 {
         let at = |axis: u64| read(&self.coordinates, 3 * vertex + axis, self.bits) as f64;
-        self.lowest + self.step * DVec3::new(at(0), at(1), at(2))
+        let half_way = self.half_step * DVec3::new(at(0), at(1), at(2));
+        self.lowest + half_way + half_way
     }
 
     /// The position of a vertex, in constant time; none if there is no such vertex.
@@ -316,7 +318,7 @@ mod tests {
             Affine::from_translation(DVec3::splat(5e6)),
             Affine::from_scale(DVec3::splat(1e150)),
             Affine::from_scale(DVec3::splat(1e-300)),
-            Affine::from_scale(DVec3::splat(1e307)),
+            Affine::from_scale(DVec3::splat(1.1e308)),
         ] {
             let mesh = torus().transformed(&map);
             for bits in [1, 12, 31, 32] {

@@ -281,11 +281,11 @@ mod tests {
     #[test]
     fn bounds_hold_at_the_same_parameters_and_are_not_wild() {
         for quadric in all() {
-            for (u_steps, v_steps) in [(5, 3), (12, 1), (16, 8)] {
-                let quadric = Quadric { u_steps, v_steps, ..quadric.clone() };
+            for (u_steps, v_steps, v_to) in [(5, 3, 1.3), (12, 1, 1.3), (16, 8, 1.3), (64, 1, 0.2)] {
+                let quadric = Quadric { u_steps, v_steps, v_to, ..quadric.clone() };
                 let Converted { report, .. } = quadric.mesh(&Exec::default()).unwrap();
                 let Deviation::AtMost(bound) = report.deviation else { panic!("a bound") };
-                let at = |i: f64, j: f64| quadric.point(i / f64::from(u_steps), 1.3 * j / f64::from(v_steps));
+                let at = |i: f64, j: f64| quadric.point(i / f64::from(u_steps), v_to * j / f64::from(v_steps));
                 let mut farthest = 0.0f64;
                 for cell in 0..u_steps * v_steps {
                     let (i, j) = (f64::from(cell % u_steps), f64::from(cell / u_steps));
@@ -302,7 +302,9 @@ mod tests {
                         }
                     }
                 }
-                assert!(farthest <= bound && bound < 4.0 * farthest, "{:?} {farthest} {bound}", quadric.shape);
+                assert!(farthest <= bound, "{:?} {farthest} {bound}", quadric.shape);
+                // Where the parts of the bound are largest in different places it is more generous.
+                assert!(v_to < 1.0 || bound < 4.0 * farthest, "{:?} {farthest} {bound}", quadric.shape);
             }
         }
     }
