@@ -204,6 +204,9 @@ fn collapsing_a_split_edge_gives_back_the_faces() {
                 let end = mesh.ends(e)[towards];
                 let vertex = if operator == 0 { mesh.split_edge(e) } else { mesh.insert_on_edge(e) }.unwrap();
                 assert!(mesh.validate().is_empty());
+                // Faces still start where they did.
+                let starts = |mesh: &HalfEdgeMesh, face| mesh.corners(face).next();
+                assert!(operator == 0 || source.live_faces().all(|f| starts(&mesh, f) == starts(&source, f)));
                 mesh.collapse_half_edge(mesh.find(vertex, end).unwrap()).unwrap();
                 assert!(mesh.validate().is_empty());
                 assert_eq!(turned(&mesh), turned(&source));
