@@ -371,10 +371,18 @@ fn operators_touch_as_much_of_a_small_mesh_as_of_a_large_one() {
             let at = mesh.edge_slots() as u32 / 20 * k;
             let operators: [fn(&mut HalfEdgeMesh, u32); 5] = [
                 |mesh, at| mesh.flip_edge(EdgeId(at)).unwrap(),
-                |mesh, at| drop(mesh.split_edge(EdgeId(at)).unwrap()),
-                |mesh, at| drop(mesh.collapse_edge(EdgeId(at)).unwrap()),
-                |mesh, at| drop(mesh.split_face(mesh.face(HalfEdgeId(2 * at)).unwrap()).unwrap()),
-                |mesh, at| drop(mesh.remove_vertex(mesh.origin(HalfEdgeId(2 * at)), Hole::Triangles).unwrap()),
+                |mesh, at| {
+                    let _ = mesh.split_edge(EdgeId(at)).unwrap();
+                },
+                |mesh, at| {
+                    let _ = mesh.collapse_edge(EdgeId(at)).unwrap();
+                },
+                |mesh, at| {
+                    let _ = mesh.split_face(mesh.face(HalfEdgeId(2 * at)).unwrap()).unwrap();
+                },
+                |mesh, at| {
+                    let _ = mesh.remove_vertex(mesh.origin(HalfEdgeId(2 * at)), Hole::Triangles).unwrap();
+                },
             ];
             for (touched, operator) in touched.iter_mut().zip(operators) {
                 let mut after = mesh.clone();
@@ -384,8 +392,8 @@ fn operators_touch_as_much_of_a_small_mesh_as_of_a_large_one() {
         }
         most.push(touched);
     }
-    // A flip sets 2 origins, 6 next, 6 previous, 2 faces and up to 4 half-edges of vertices and faces. All vertices have six
-    // edges; the rest are the counts of the least mesh, rounded up.
+    // A flip sets 2 origins, 6 next, 6 previous, 2 faces and up to 4 half-edges of vertices and faces. All vertices
+    // have six edges; the rest are the counts of the least mesh, rounded up.
     for touched in most {
         assert!(
             touched.iter().zip([20, 45, 50, 40, 150]).all(|(&found, bound)| found > 10 && found <= bound),
