@@ -1,5 +1,5 @@
-//! Edges of a sphere flipped at random, and edges split, collapsed and flipped until they are about equally long; nothing
-//! folds over, and an attribute comes along.
+//! Edges of a sphere flipped at random, and edges split, collapsed and flipped until they are about equally long;
+//! nothing folds over, and an attribute comes along.
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;

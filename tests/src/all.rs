@@ -18,6 +18,7 @@ mod compare;
 mod documents;
 #[path = "../fuzz/entry.rs"]
 mod entry;
+mod face_list_operators;
 mod floors;
 mod greedy_insertion;
 mod half_edges;

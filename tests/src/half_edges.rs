@@ -1,4 +1,5 @@
-//! Editable half-edges against lists of faces: what is legal is decided there by definition, by making the change and looking.
+//! Editable half-edges against lists of faces: what is legal is decided there by definition, by making the change and
+//! looking.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,6 +15,9 @@ use shapeloom::mesh::{PolyMesh, TriangulatePolygons};
 use shapeloom::shape::Geometry;
 
 use crate::collection::read_file;
+use crate::face_list_operators::{
+    Faces, collapsed, cut, flipped, joined, removed, same_faces, sides, surface, unordered,
+};
 use crate::support::{Dice, shared_data};
 
 type Faces = Vec<Vec<u32>>;
@@ -634,7 +638,8 @@ fn lists_and_half_edges_allow_the_same_updates_and_come_to_the_same_faces() {
             let vertices = list.vertex_count() as u64;
             let edge = [dice.next(), dice.next()].map(|roll| VertexId((roll % vertices) as u32));
             // Mostly edges that are there.
-            let edge = match mesh.live_edges().nth((dice.next() % 150) as usize) {
+            let count = u64::from(mesh.counts().edges.max(1));
+            let edge = match mesh.live_edges().nth((dice.next() % count) as usize) {
                 Some(there) if !dice.next().is_multiple_of(4) => mesh.ends(there),
                 _ => edge,
             };

@@ -4,8 +4,8 @@ use std::collections::BinaryHeap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
-    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report, Reservation,
-    Severity, options,
+    Aabb, Affine, Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report,
+    Reservation, Severity, options,
 };
 
 use super::difference::{Farthest, Heights};
@@ -66,10 +66,17 @@ impl Convert<HeightField> for GreedyInsertion {
         refinement.refine(threshold, &exec.part(0.0, 0.9))?;
         let made = refinement.finish(self, threshold, &exec.part(0.9, 1.0))?;
 
+        // Positions are rounded where they are placed: a few units in the last place of the largest coordinate. In the field's
+        // own frame heights are as they were.
+        let bounds = Aabb::from_points(made.mesh.positions().iter().copied());
+        let placing = match made.mesh.positions().is_empty() || *source.placement() == Affine::IDENTITY {
+            true => 0.0,
+            false => 8.0 * f64::EPSILON * bounds.min.abs().max(bounds.max.abs()).max_element(),
+        };
         let height_error = made.worst / scale;
         let deviation = match made.worst <= rounding || stretch == 0.0 {
             true => Deviation::Exact,
-            false => Deviation::AtMost((made.worst + rounding) / scale * stretch * (1.0 + 1e-14)),
+            false => Deviation::AtMost((made.worst + rounding) / scale * stretch * (1.0 + 1e-14) + placing),
         };
         let basis = "the largest difference along the heights from the bilinear surface, in closed form over every \
                      triangle; both are heights over the same cells, so neither is farther from the other";
@@ -247,6 +254,11 @@ impl<'a> Refinement<'a> {
             for &triangle in &changed {
                 queue.extend(self.measure(triangle, exec)?.filter(worth));
             }
+            // A corner of the cell may lie in another triangle, and leave this one as it was: its turn comes again. This ends, as
+            // every turn takes a sample.
+            if changed.binary_search(&triangle).is_err() {
+                queue.push((error, number, version));
+            }
         }
         Ok(())
     }
@@ -355,7 +367,7 @@ impl<'a> Refinement<'a> {
         [[0, 0], [1, 0], [1, 1], [0, 1]].map(|step| {
             let corner = [cell[0] + step[0], cell[1] + step[1]];
             let found = half.into_iter().chain(other).find(|&point| self.mesh.points()[point as usize] == corner);
-            found.unwrap_or_default()
+            found.expect("a triangle that stays too far is half of a cell")
         })
     }
 }

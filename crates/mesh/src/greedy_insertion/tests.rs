@@ -248,3 +248,44 @@ fn strange_fields_are_taken() {
     assert_eq!(refused.category(), Category::OverLimit);
     assert!(GreedyInsertion::new(f64::NAN).convert(&row).is_err());
 }
+
+/// That triangles cover the whole cells of a field without holes, upward, and within the bound.
+fn assert_covered(field: &HeightField, tolerance: f64) {
+    let (columns, rows) = (field.columns(), field.rows());
+    let converted = GreedyInsertion::new(tolerance).convert(field).unwrap();
+    let plan = in_plan(field, &converted.value);
+    let mut area = 0.0;
+    for corners in converted.value.triangles() {
+        let [a, b, c] = corners.map(|vertex| plan[vertex as usize]);
+        let doubled = (b - a).perp_dot(c - a);
+        assert!(doubled > 1e-9, "{columns} x {rows}, {tolerance}: {a} {b} {c}");
+        area += doubled / 2.0;
+    }
+    assert!((area - f64::from((columns - 1) * (rows - 1))).abs() < 1e-9, "{columns} x {rows}, {tolerance}: {area}");
+    let bound = converted.report.deviation.value().unwrap();
+    let found = sampled(field, &converted.value, 4);
+    assert!(found <= bound, "{columns} x {rows}, {tolerance}: {found} {bound}");
+}
+
+/// Where only points between samples are too far, the sample that goes in may leave the triangle as it was: it must not be
+/// forgotten. Saddles and fields of few heights have many triangles that are equally far.
+#[test]
+fn no_triangle_is_forgotten() {
+    let heights = [2, 1, 1, 1, 3, 3, 0, 0, 0, 2, 3, 1, 1, 3, 1, 2, 0, 2];
+    assert_covered(&field(9, 2, |k| f64::from(heights[k as usize])), 2.1);
+    for columns in 3..20u32 {
+        for rows in (3..20u32).chain([33]) {
+            let saddle = field(columns, rows, |k| f64::from(k % columns) * f64::from(k / columns));
+            let size = f64::from(columns - 1) * f64::from(rows - 1);
+            for part in [0.01, 0.001] {
+                assert_covered(&saddle, part * size.hypot(f64::from(columns)));
+            }
+        }
+    }
+    let mut dice = Dice(5);
+    for _ in 0..1500 {
+        let (columns, rows, few) = (2 + dice.below(9), 2 + dice.below(9), 2 + dice.below(4));
+        let steps = field(columns, rows, |_| f64::from(dice.below(few)));
+        assert_covered(&steps, f64::from(few - 1) * (0.05 + dice.unit()));
+    }
+}

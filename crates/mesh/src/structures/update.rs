@@ -35,11 +35,12 @@ impl fmt::Display for Update {
     }
 }
 
-/// A structure of a triangle mesh that can be changed in place. Edges are named by their vertices, whose numbers are the
-/// same in all structures; what [`StructureKind::update_cost`](super::StructureKind::update_cost) says is paid beside the
-/// search for the edge, which is no dearer.
+/// A structure of a triangle mesh that can be changed in place. Edges are named by their vertices, whose numbers are
+/// the same in all structures; what [`StructureKind::update_cost`](super::StructureKind::update_cost) says is paid
+/// beside the search for the edge, which is no dearer.
 ///
-/// All implementors refuse the same changes of a manifold mesh, and come to the same faces; the faces' numbers may differ.
+/// All implementors refuse the same changes of a manifold mesh, and come to the same faces; the faces' numbers may
+/// differ.
 pub trait LocalUpdate: Incidence {
     /// Lets the edge between two vertices join the opposite corners of its two triangles instead.
     ///

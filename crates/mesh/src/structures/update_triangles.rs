@@ -65,7 +65,8 @@ impl IndexedTriangles {
     }
 }
 
-/// Every change looks at all triangles; those of meshes that are not manifold are refused at their edge, or as if they were.
+/// Every change looks at all triangles; those of meshes that are not manifold are refused at their edge, or as if they
+/// were.
 impl LocalUpdate for IndexedTriangles {
     fn flip(&mut self, edge: [VertexId; 2]) -> Result<(), Illegal> {
         let beside = self.beside(edge)?;

@@ -54,8 +54,8 @@ impl<P: FnMut(EdgeId) -> bool> Iterator for BreadthFirst<'_, P> {
 
 /// Breadth-first search.
 impl HalfEdgeMesh {
-    /// The faces that can be come to from some faces, the nearest first, each once; it stops at borders. Between equally
-    /// near ones the order is that of the start, then of the sides of the faces they were come to from.
+    /// The faces that can be come to from some faces, the nearest first, each once; it stops at borders. Between
+    /// equally near ones the order is that of the start, then of the sides of the faces they were come to from.
     ///
     /// Faces that are named twice, deleted or not there count once or not at all. Takes a bit for each face; the whole
     /// search looks at each side of each face once.

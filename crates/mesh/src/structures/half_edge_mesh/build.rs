@@ -22,12 +22,13 @@ struct Worst {
 impl HalfEdgeMesh {
     /// The half-edges of polygons. Faces keep their numbers and first corners, vertices their numbers.
     ///
-    /// Takes 32 bytes a corner beside the result while it runs. Cost: linear, but for the sorting of edges at one vertex.
+    /// Takes 32 bytes a corner beside the result while it runs. Cost: linear, but for the sorting of edges at one
+    /// vertex.
     ///
     /// # Errors
-    /// What half-edges cannot hold, with the elements at fault: a face that has a vertex twice, an edge of more than two faces,
-    /// an edge that two faces pass in the same direction, a vertex with several fans of faces; more half-edges than
-    /// 32 bits can tell apart, the budget, or the reason to stop.
+    /// What half-edges cannot hold, with the elements at fault: a face that has a vertex twice, an edge of more than
+    /// two faces, an edge that two faces pass in the same direction, a vertex with several fans of faces; more
+    /// half-edges than 32 bits can tell apart, the budget, or the reason to stop.
     pub fn try_build(faces: &IndexedPolygons, exec: &Exec) -> Result<Self, StructureError> {
         exec.check()?;
         let corners = faces.all_corners().len();
@@ -249,8 +250,8 @@ impl TryFrom<&IndexedPolygons> for HalfEdgeMesh {
     }
 }
 
-/// Exact: the faces with their numbers and first corners, isolated vertices too. Deleted vertices become isolated ones, the
-/// numbers of deleted faces close up; [`HalfEdgeMesh::compact`] before tells which is which.
+/// Exact: the faces with their numbers and first corners, isolated vertices too. Deleted vertices become isolated ones,
+/// the numbers of deleted faces close up; [`HalfEdgeMesh::compact`] before tells which is which.
 impl From<&HalfEdgeMesh> for IndexedPolygons {
     fn from(mesh: &HalfEdgeMesh) -> Self {
         let mut starts = vec![0];

@@ -5,12 +5,12 @@ use crate::structures::{EdgeId, FaceId, HalfEdgeId, VertexId};
 
 /// Edge collapse.
 impl HalfEdgeMesh {
-    /// Whether [`HalfEdgeMesh::collapse_half_edge`] is possible: the link condition (Dey, Edelsbrunner, Guha and Nekhayev
-    /// 1999), said for surfaces of polygons with a border.
+    /// Whether [`HalfEdgeMesh::collapse_half_edge`] is possible: the link condition (Dey, Edelsbrunner, Guha and
+    /// Nekhayev 1999), said for surfaces of polygons with a border.
     ///
-    /// A vertex that edges join to both ends must be the third corner of a triangle beside the edge; a face that has both
-    /// ends must be beside it; the ends may lie on the border both only if the edge does, and then not in a loop of three
-    /// edges; and no two faces may come to have the same corners, as on a tetrahedron.
+    /// A vertex that edges join to both ends must be the third corner of a triangle beside the edge; a face that has
+    /// both ends must be beside it; the ends may lie on the border both only if the edge does, and then not in a loop
+    /// of three edges; and no two faces may come to have the same corners, as on a tetrahedron.
     ///
     /// Cost: the valences of both ends, times the logarithm of one.
     ///
@@ -84,8 +84,8 @@ impl HalfEdgeMesh {
     }
 
     /// Moves the vertex that a half-edge leaves into the one that it leads to, which stays. Triangles beside the edge
-    /// vanish; larger polygons lose a corner. Of the two sides of a triangle that become one, the one of the vertex that
-    /// stays keeps its number. Gives the vertex that stays.
+    /// vanish; larger polygons lose a corner. Of the two sides of a triangle that become one, the one of the vertex
+    /// that stays keeps its number. Gives the vertex that stays.
     ///
     /// Cost: the valences of both ends.
     ///

@@ -52,7 +52,8 @@ pub struct Compacted {
 
 /// Compaction.
 impl HalfEdgeMesh {
-    /// Gives the elements new numbers without gaps, in the order of the old, and tells which became which. Cost: linear.
+    /// Gives the elements new numbers without gaps, in the order of the old, and tells which became which. Cost:
+    /// linear.
     pub fn compact(&mut self) -> Compacted {
         let live = |slots: &[u32]| Renumbering::of(slots.iter().map(|&slot| slot != GONE));
         let (vertices, faces) = (live(&self.leaving), live(&self.first));

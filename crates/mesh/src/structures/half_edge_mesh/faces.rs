@@ -8,7 +8,8 @@ impl HalfEdgeMesh {
     /// Whether [`HalfEdgeMesh::cut_face`] is possible. Cost: the corners of the face and the smaller valence.
     ///
     /// # Errors
-    /// No such half-edges, half-edges of different faces or of none, corners that are neighbours, or an edge between them.
+    /// No such half-edges, half-edges of different faces or of none, corners that are neighbours, or an edge between
+    /// them.
     pub fn can_cut_face(&self, from: HalfEdgeId, to: HalfEdgeId) -> Result<(), Illegal> {
         for half in [from, to] {
             self.known_half_edge(half)?;
@@ -24,9 +25,9 @@ impl HalfEdgeMesh {
         self.room(0, 1, 1)
     }
 
-    /// Cuts a face by a new edge between the corners at which two of its half-edges start. The part with `from` keeps the
-    /// face's number, the part with `to` is new. Gives the new half-edge from the corner of `to` to that of `from`, which
-    /// lies in the old face. [`HalfEdgeMesh::join_faces`] undoes it. Cost: the corners of the face.
+    /// Cuts a face by a new edge between the corners at which two of its half-edges start. The part with `from` keeps
+    /// the face's number, the part with `to` is new. Gives the new half-edge from the corner of `to` to that of `from`,
+    /// which lies in the old face. [`HalfEdgeMesh::join_faces`] undoes it. Cost: the corners of the face.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_cut_face`].
@@ -59,7 +60,8 @@ impl HalfEdgeMesh {
     /// Whether [`HalfEdgeMesh::join_faces`] is possible. Cost: the corners of both faces.
     ///
     /// # Errors
-    /// No such edge, a border edge, faces that share more than this edge, or another face with all corners of the result.
+    /// No such edge, a border edge, faces that share more than this edge, or another face with all corners of the
+    /// result.
     pub fn can_join_faces(&self, edge: EdgeId) -> Result<(), Illegal> {
         let [h, t] = self.inner_edge(edge)?;
         let mut corners: Vec<u32> = self.cycle(h).map(|side| self.start(side.0)).collect();
@@ -75,8 +77,8 @@ impl HalfEdgeMesh {
         self.refuse_double(outside)
     }
 
-    /// Deletes an edge between two faces, which become one polygon with the number of the face of the edge's first half.
-    /// Undoes [`HalfEdgeMesh::cut_face`]. Cost: the corners of both faces.
+    /// Deletes an edge between two faces, which become one polygon with the number of the face of the edge's first
+    /// half. Undoes [`HalfEdgeMesh::cut_face`]. Cost: the corners of both faces.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_join_faces`].

@@ -24,8 +24,8 @@ impl HalfEdgeMesh {
         Ok(())
     }
 
-    /// Lets an edge between two triangles join their other two vertices instead. The edge and both faces keep their numbers.
-    /// Two flips give back the edge with its faces exchanged, four give back the same half-edges.
+    /// Lets an edge between two triangles join their other two vertices instead. The edge and both faces keep their
+    /// numbers. Two flips give back the edge with its faces exchanged, four give back the same half-edges.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_flip`].

@@ -11,15 +11,15 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Legality in space, apart from the topological one: each of these answers only whether faces turn over, and expects
 /// that the topological `can_` function said yes.
 ///
-/// A face turns over when the cosine of the angle between its normals before and after is not above `min_cosine`: with 0 it
-/// may turn by less than 90 degrees, with 0.5 by less than 60. A face without area is allowed to get some, or to stay
-/// without; one with area must not lose it. Polygons have the normal of their Newell vector. Sizes from 1e-300 to 1e300 are
-/// told rightly; where a position is not finite, every operator that would use it turns a face over.
+/// A face turns over when the cosine of the angle between its normals before and after is not above `min_cosine`: with
+/// 0 it may turn by less than 90 degrees, with 0.5 by less than 60. A face without area is allowed to get some, or to
+/// stay without; one with area must not lose it. Polygons have the normal of their Newell vector. Sizes from 1e-300 to
+/// 1e300 are told rightly; where a position is not finite, every operator that would use it turns a face over.
 ///
 /// `positions` has one for each vertex number; all panic where it is shorter. Cost: the corners of the faces around.
 impl HalfEdgeMesh {
-    /// Whether flipping an edge turns no face over: both new triangles must look to the side of their common vector area,
-    /// which is that of the old two. In a plane that is so where the quadrilateral is strictly convex.
+    /// Whether flipping an edge turns no face over: both new triangles must look to the side of their common vector
+    /// area, which is that of the old two. In a plane that is so where the quadrilateral is strictly convex.
     ///
     /// # Errors
     /// No such inner edge between triangles, or the face that would turn over.
@@ -131,8 +131,8 @@ impl HalfEdgeMesh {
         }
     }
 
-    /// Whether removing a vertex turns no face over: each face around it must look to the side of the vector area of the hole's
-    /// outline, and so must each of the triangles that fill it; none are given where it stays a polygon.
+    /// Whether removing a vertex turns no face over: each face around it must look to the side of the vector area of
+    /// the hole's outline, and so must each of the triangles that fill it; none are given where it stays a polygon.
     ///
     /// # Errors
     /// No such vertex, or a face around it that would turn over.

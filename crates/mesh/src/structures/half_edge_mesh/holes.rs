@@ -21,7 +21,8 @@ impl HalfEdgeMesh {
     /// Cuts a face into triangles by edges that are not there yet, whatever its shape: a fan if one will do, else any
     /// triangulation; beyond 64 corners fans alone are tried. The last triangle keeps the face's number.
     ///
-    /// Cost: the valences of the corners, times the logarithm of their number; where no fan will do, the third power of it.
+    /// Cost: the valences of the corners, times the logarithm of their number; where no fan will do, the third power of
+    /// it.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_triangulate_face`].
@@ -84,8 +85,8 @@ impl HalfEdgeMesh {
     }
 }
 
-/// A triangulation of an outline without the barred diagonals, if there is one: by dynamic programming over the stretches
-/// of the outline (as Klincsek 1980 does for the least weight).
+/// A triangulation of an outline without the barred diagonals, if there is one: by dynamic programming over the
+/// stretches of the outline (as Klincsek 1980 does for the least weight).
 fn any_triangulation(barred: &[u64]) -> Option<Vec<[u32; 3]>> {
     let count = barred.len();
     let allowed = |i: usize, j: usize| j == i + 1 || (i == 0 && j + 1 == count) || barred[i] >> j & 1 == 0;

@@ -6,7 +6,8 @@ use shapeloom_core::{Category, Diagnostic};
 
 use crate::structures::{FaceId, VertexId};
 
-/// Why an operator on a mesh is refused: the result would be no 2-manifold, have another topology, or faces turned over.
+/// Why an operator on a mesh is refused: the result would be no 2-manifold, have another topology, or faces turned
+/// over.
 ///
 /// The mesh is left as it was.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

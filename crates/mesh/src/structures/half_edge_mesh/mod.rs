@@ -31,19 +31,19 @@ const NONE: u32 = u32::MAX;
 /// An element that was deleted.
 const GONE: u32 = u32::MAX - 1;
 
-/// Half-edges in pairs: each edge is two half-edges of opposite directions, `h` and `h ^ 1`; each knows where it starts, the next
-/// and the previous one around its face, and its face. A vertex knows one half-edge that leaves it, a face the one at its
-/// first corner. 16 bytes a half-edge, 4 a vertex, 4 a face.
+/// Half-edges in pairs: each edge is two half-edges of opposite directions, `h` and `h ^ 1`; each knows where it
+/// starts, the next and the previous one around its face, and its face. A vertex knows one half-edge that leaves it, a
+/// face the one at its first corner. 16 bytes a half-edge, 4 a vertex, 4 a face.
 ///
-/// It holds oriented 2-manifold meshes of polygons, with borders: no face has a vertex twice, no two edges have the same
-/// vertices, no edge has more than two faces, the faces at a vertex form one fan. Half-edges on the border have no face
-/// and are linked into loops; the half-edge of a border vertex is the one on the border. All of this holds after every
-/// operator, and [`HalfEdgeMesh::validate`] lists what does not. Operators that would break it, or change the topology, refuse
-/// with the reason, an [`Illegal`]; each has a `can_` function that tells beforehand.
+/// It holds oriented 2-manifold meshes of polygons, with borders: no face has a vertex twice, no two edges have the
+/// same vertices, no edge has more than two faces, the faces at a vertex form one fan. Half-edges on the border have no
+/// face and are linked into loops; the half-edge of a border vertex is the one on the border. All of this holds after
+/// every operator, and [`HalfEdgeMesh::validate`] lists what does not. Operators that would break it, or change the
+/// topology, refuse with the reason, an [`Illegal`]; each has a `can_` function that tells beforehand.
 ///
 /// Edge `e` has the half-edges `2e` and `2e + 1`. What is deleted leaves its number unused, so no number ever comes to
-/// mean another element; [`HalfEdgeMesh::compact`] closes the gaps and tells the new numbers. Coordinates are not part of it:
-/// functions that need them take a slice with one for each vertex number.
+/// mean another element; [`HalfEdgeMesh::compact`] closes the gaps and tells the new numbers. Coordinates are not part
+/// of it: functions that need them take a slice with one for each vertex number.
 ///
 /// ```
 /// use shapeloom_core::Exec;
@@ -194,7 +194,8 @@ impl HalfEdgeMesh {
         Some(self.left(half_edge.0)).filter(|&face| face < GONE).map(FaceId)
     }
 
-    /// A half-edge that leaves a vertex, the one on the border if there is one; none if the vertex is isolated or deleted.
+    /// A half-edge that leaves a vertex, the one on the border if there is one; none if the vertex is isolated or
+    /// deleted.
     pub fn leaving(&self, vertex: VertexId) -> Option<HalfEdgeId> {
         Some(self.leaving[vertex.index()]).filter(|&leaving| leaving < GONE).map(HalfEdgeId)
     }

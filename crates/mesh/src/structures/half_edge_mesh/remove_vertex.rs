@@ -17,18 +17,19 @@ impl HalfEdgeMesh {
     /// Whether [`HalfEdgeMesh::remove_vertex`] is possible.
     ///
     /// # Errors
-    /// No such vertex; a hole with a vertex twice, or a border vertex whose neighbours on the border are joined already; a
-    /// face with the same corners as another; for triangles, a hole that cannot be cut without doubling an edge.
+    /// No such vertex; a hole with a vertex twice, or a border vertex whose neighbours on the border are joined
+    /// already; a face with the same corners as another; for triangles, a hole that cannot be cut without doubling an
+    /// edge.
     pub fn can_remove_vertex(&self, vertex: VertexId, hole: Hole) -> Result<(), Illegal> {
         self.plan_removal(vertex, hole).map(drop)
     }
 
-    /// Deletes a vertex with its edges. Its faces become one polygon with the number of one of them, or triangles. At the
-    /// border the neighbours along it are joined by a new border edge. An isolated vertex just goes. Gives the face with
-    /// the first corner of the hole; none for an isolated vertex.
+    /// Deletes a vertex with its edges. Its faces become one polygon with the number of one of them, or triangles. At
+    /// the border the neighbours along it are joined by a new border edge. An isolated vertex just goes. Gives the face
+    /// with the first corner of the hole; none for an isolated vertex.
     ///
-    /// Cost: the corners of the faces around it, times the logarithm of their number; for triangles also the valences of
-    /// the corners, and where no fan will do, the third power of up to 64 corners.
+    /// Cost: the corners of the faces around it, times the logarithm of their number; for triangles also the valences
+    /// of the corners, and where no fan will do, the third power of up to 64 corners.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_remove_vertex`].
@@ -108,8 +109,8 @@ impl HalfEdgeMesh {
         self.refuse_double(self.hole_sides(vertex).into_iter())
     }
 
-    /// Makes one polygon of the faces around a vertex, which is deleted; none if there are none. The polygon starts at the
-    /// first of [`HalfEdgeMesh::hole_corners`].
+    /// Makes one polygon of the faces around a vertex, which is deleted; none if there are none. The polygon starts at
+    /// the first of [`HalfEdgeMesh::hole_corners`].
     fn merge_faces_around(&mut self, vertex: u32) -> Option<u32> {
         let spokes: Vec<HalfEdgeId> = self.fan(vertex).collect();
         let mut sides = self.hole_sides(vertex);

@@ -5,8 +5,8 @@ use crate::structures::{EdgeId, FaceId, VertexId};
 
 /// Splits.
 impl HalfEdgeMesh {
-    /// Puts a vertex on an edge: both faces get a corner more. The edge keeps its number on the side where its first half
-    /// starts. Collapsing the new half-edge towards either end undoes it.
+    /// Puts a vertex on an edge: both faces get a corner more. The edge keeps its number on the side where its first
+    /// half starts. Collapsing the new half-edge towards either end undoes it.
     ///
     /// # Errors
     /// No such edge, or numbers run out.
@@ -41,9 +41,10 @@ impl HalfEdgeMesh {
         self.room(1, 3, 2)
     }
 
-    /// Puts a vertex on an edge and joins it to the opposite corners of the triangles beside it, each of which becomes two.
-    /// Larger polygons get a corner more. The halves with the edge's second vertex of the face to its left, and with the
-    /// first of the one to its right, keep the faces' numbers. Collapsing the new half-edge towards either end undoes it.
+    /// Puts a vertex on an edge and joins it to the opposite corners of the triangles beside it, each of which becomes
+    /// two. Larger polygons get a corner more. The halves with the edge's second vertex of the face to its left, and
+    /// with the first of the one to its right, keep the faces' numbers. Collapsing the new half-edge towards either end
+    /// undoes it.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_split_edge`].
@@ -71,8 +72,8 @@ impl HalfEdgeMesh {
         self.room(1, corners, corners - 1)
     }
 
-    /// Puts a vertex into a face and joins it to every corner: a triangle for each side. The one at the face's first side
-    /// keeps its number. Removing the vertex, with [`Hole::Polygon`](super::Hole::Polygon), undoes it.
+    /// Puts a vertex into a face and joins it to every corner: a triangle for each side. The one at the face's first
+    /// side keeps its number. Removing the vertex, with [`Hole::Polygon`](super::Hole::Polygon), undoes it.
     ///
     /// # Errors
     /// As [`HalfEdgeMesh::can_split_face`].

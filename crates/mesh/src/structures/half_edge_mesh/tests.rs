@@ -204,6 +204,9 @@ fn collapsing_a_split_edge_gives_back_the_faces() {
                 let end = mesh.ends(e)[towards];
                 let vertex = if operator == 0 { mesh.split_edge(e) } else { mesh.insert_on_edge(e) }.unwrap();
                 assert!(mesh.validate().is_empty());
+                // Faces still start where they did.
+                let starts = |mesh: &HalfEdgeMesh, face| mesh.corners(face).next();
+                assert!(operator == 0 || source.live_faces().all(|f| starts(&mesh, f) == starts(&source, f)));
                 mesh.collapse_half_edge(mesh.find(vertex, end).unwrap()).unwrap();
                 assert!(mesh.validate().is_empty());
                 assert_eq!(turned(&mesh), turned(&source));
@@ -389,8 +392,8 @@ fn operators_touch_as_much_of_a_small_mesh_as_of_a_large_one() {
         }
         most.push(touched);
     }
-    // A flip sets 2 origins, 6 next, 6 previous, 2 faces and up to 4 half-edges of vertices and faces. All vertices have six
-    // edges; the rest are the counts of the least mesh, rounded up.
+    // A flip sets 2 origins, 6 next, 6 previous, 2 faces and up to 4 half-edges of vertices and faces. All vertices
+    // have six edges; the rest are the counts of the least mesh, rounded up.
     for touched in most {
         assert!(
             touched.iter().zip([20, 45, 50, 40, 150]).all(|(&found, bound)| found > 10 && found <= bound),

@@ -21,9 +21,10 @@ impl HalfEdgeMesh {
     /// All that is wrong with the structure; nothing where it is sound, as it is after every operator.
     ///
     /// Checks that arrays fit together, that links name elements in use and run both ways, that faces and border loops
-    /// are single cycles of three sides and more with different corners, that every edge has a face and no other edge has its
-    /// vertices, that the faces at each vertex form one fan, that border vertices know the border, and the counts. What
-    /// follows links is checked only where all links are right. Cost: linear, but for the sorting of edges.
+    /// are single cycles of three sides and more with different corners, that every edge has a face and no other edge
+    /// has its vertices, that the faces at each vertex form one fan, that border vertices know the border, and the
+    /// counts. What follows links is checked only where all links are right. Cost: linear, but for the sorting of
+    /// edges.
     pub fn validate(&self) -> Vec<StructureError> {
         let mut findings = Findings::default();
         let halves = self.origin.len();

@@ -50,8 +50,8 @@ impl Iterator for AroundFace<'_> {
 
 /// Walks. All panic on numbers that the mesh does not have; deleted and isolated elements have nothing around them.
 impl HalfEdgeMesh {
-    /// The half-edges that leave a vertex, counter-clockwise seen from outside. At the border it starts at the first edge
-    /// of the fan and ends with the half-edge that has no face, so that every face at the vertex is met.
+    /// The half-edges that leave a vertex, counter-clockwise seen from outside. At the border it starts at the first
+    /// edge of the fan and ends with the half-edge that has no face, so that every face at the vertex is met.
     pub fn around_vertex(&self, vertex: VertexId) -> AroundVertex<'_> {
         self.fan(vertex.0)
     }
