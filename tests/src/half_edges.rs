@@ -1,5 +1,4 @@
-//! Editable half-edges against lists of faces: what is legal is decided there by definition, by making the change and
-//! looking.
+//! Editable half-edges against lists of faces: what is legal is decided there by definition, by making the change and looking.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,9 +14,6 @@ use shapeloom::mesh::{PolyMesh, TriangulatePolygons};
 use shapeloom::shape::Geometry;
 
 use crate::collection::read_file;
-use crate::face_list_operators::{
-    Faces, collapsed, cut, flipped, joined, removed, same_faces, sides, surface, unordered,
-};
 use crate::support::{Dice, shared_data};
 
 type Faces = Vec<Vec<u32>>;
@@ -94,7 +90,7 @@ fn surface(faces: &Faces) -> Option<Kind> {
         }
     }
     let mut kinds: BTreeMap<u32, (i64, usize)> = BTreeMap::new();
-    for &component in of.values() {
+    for (_, &component) in &of {
         kinds.entry(component).or_default().0 += 1;
     }
     for [a, _] in edges.keys() {
