@@ -1,15 +1,16 @@
 //! Meshes that can be edited, with positions and attributes.
 
 use shapeloom_core::glam::{DVec2, DVec3};
-use shapeloom_core::{Exec, Loss, Stop};
+use shapeloom_core::{Exec, Loss, Stop, parallel};
 
 use crate::ear_clipping::clip_ears;
+use crate::poly_mesh::check_count;
 use crate::structures::{
     EdgeId, FaceId, HalfEdgeId, HalfEdgeMesh, Hole, Illegal, Incidence, IndexedPolygons, IndexedTriangles,
     StructureError, VertexId,
 };
 use crate::triangulate_polygons::project;
-use crate::{MeshAttributes, MeshOrigins, Origins, PolyMesh, TriMesh, carry};
+use crate::{Attributes, MeshAttributes, MeshOrigins, Origins, PolyMesh, TriMesh, carry};
 
 /// How many vertices of the source a vertex is mixed from at most.
 const SOURCES: usize = 32;
@@ -32,7 +33,8 @@ pub struct EditableMesh {
     connectivity: HalfEdgeMesh,
     positions: Vec<DVec3>,
     /// The least cosine of the angle by which a face may turn in one operator: 0 unless set, which is less than 90
-    /// degrees. At −1 and below nothing but faces that lose all area is refused; NaN refuses everything.
+    /// degrees. Below −1 faces may turn over, and only these are refused: faces that lose all area, positions that are
+    /// not finite, and flips between triangles whose vector areas cancel. NaN refuses whatever changes a face.
     pub min_cosine: f64,
     attributes: MeshAttributes,
     /// What each vertex is mixed of; none for vertices that are those of the source.
@@ -129,7 +131,8 @@ impl EditableMesh {
 
     fn parts(&self, exec: &Exec) -> Result<Parts, StructureError> {
         exec.check()?;
-        let _memory = exec.reserve(2 * self.connectivity.memory_bytes() as u64)?;
+        let sources = self.source_total(exec)?;
+        let _memory = exec.reserve(self.bytes_of_parts(sources))?;
         let mut connectivity = self.connectivity.clone();
         let numbers = connectivity.compact();
         let positions = numbers.vertices.old().iter().map(|&old| self.positions[old as usize]).collect();
@@ -142,17 +145,54 @@ impl EditableMesh {
         } else {
             Origins::Same
         };
-        let vertex = self.vertex_origins(numbers.vertices.old());
+        let vertex = self.vertex_origins(numbers.vertices.old(), sources);
         let (attributes, losses) =
             carry(&self.attributes, &MeshOrigins { vertex, face: Origins::Copies(copies), wedge });
         Ok(Parts { faces, positions, attributes, losses })
     }
 
-    fn vertex_origins(&self, old: &[u32]) -> Origins {
+    /// How many sources the vertices have together.
+    fn source_total(&self, exec: &Exec) -> Result<usize, StructureError> {
+        let mut total = 0;
+        for (i, vertex) in self.connectivity.live_vertices().enumerate() {
+            if i.is_multiple_of(parallel::CHUNK) {
+                exec.check()?;
+            }
+            total += self.mixed[vertex.index()].as_ref().map_or(1, |own| own.len());
+        }
+        check_count("sources of vertices", total)?;
+        Ok(total)
+    }
+
+    /// What [`EditableMesh::parts`] takes, result included. Lists are taken to be as long as in the source on average.
+    fn bytes_of_parts(&self, sources: usize) -> u64 {
+        let connectivity = &self.connectivity;
+        let slots = connectivity.vertex_slots() + connectivity.edge_slots() + connectivity.face_slots();
+        let counts = connectivity.counts();
+        let (vertices, faces) = (u64::from(counts.vertices), u64::from(counts.faces));
+        let columns = |of: &Attributes, count: u64| {
+            (of.memory_bytes() as u64).div_ceil(of.len().max(1) as u64).saturating_mul(count)
+        };
+        let wedge = if self.changed { 0 } else { self.attributes.wedge.memory_bytes() as u64 };
+        // The copy with gaps and the one without, the numbers of either in the other.
+        let compacted = 2 * connectivity.memory_bytes() as u64 + 2 * size_of::<u32>() as u64 * slots as u64;
+        let origins = vertices * size_of::<u32>() as u64
+            + sources as u64 * (size_of::<u32>() + size_of::<f64>()) as u64
+            + faces * size_of::<u32>() as u64;
+        let attributes = columns(&self.attributes.vertex, vertices)
+            .saturating_add(columns(&self.attributes.face, faces))
+            .saturating_add(wedge);
+        attributes.saturating_add(compacted + origins + vertices * size_of::<DVec3>() as u64)
+    }
+
+    /// Where vertices come from, that have so many sources together.
+    fn vertex_origins(&self, old: &[u32], total: usize) -> Origins {
         if old.iter().all(|&vertex| self.mixed[vertex as usize].is_none()) {
             return Origins::Copies(old.to_vec());
         }
-        let (mut starts, mut sources, mut weights) = (vec![0], Vec::new(), Vec::new());
+        let mut starts = Vec::with_capacity(old.len() + 1);
+        let (mut sources, mut weights) = (Vec::with_capacity(total), Vec::with_capacity(total));
+        starts.push(0);
         for &vertex in old {
             for (source, weight) in self.sources(vertex) {
                 sources.push(source);

@@ -258,3 +258,91 @@ fn the_number_of_sources_is_bounded() {
     assert_eq!((mixture.len(), mixture[0].0), (SOURCES, 28));
     assert!((mixture.iter().map(|(_, weight)| weight).sum::<f64>() - 1.0).abs() < 1e-14);
 }
+
+#[test]
+fn a_hub_of_very_many_edges_is_removed() {
+    let count = 5000u32;
+    let rim = |i: u32| DVec3::from((DVec2::from_angle(f64::from(i) / f64::from(count) * std::f64::consts::TAU), 0.0));
+    let positions = (0..count).map(rim).chain([DVec3::ZERO]).collect();
+    let faces = (0..count).map(|i| [i, (i + 1) % count, count]).collect();
+    let mut mesh = EditableMesh::try_from(&TriMesh::try_new(positions, faces).unwrap()).unwrap();
+    let hub = VertexId(count);
+    assert_eq!(mesh.connectivity().valence(hub), count as usize);
+    mesh.remove_vertex(hub, Hole::Triangles).unwrap();
+    assert_eq!(mesh.connectivity().counts().faces, count - 2);
+    assert_eq!(mesh.connectivity().validate(), []);
+}
+
+/// Two triangles in a plane that make a quadrilateral which is not convex, and the edge between them.
+fn dart() -> (EditableMesh, EdgeId) {
+    let places = [(0.0, 0.0), (4.0, 0.0), (1.0, 1.0), (0.0, 4.0)];
+    let positions = places.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+    let mesh = EditableMesh::try_from(&TriMesh::try_new(positions, vec![[0, 1, 2], [0, 2, 3]]).unwrap()).unwrap();
+    let half = mesh.connectivity().find(VertexId(0), VertexId(2)).unwrap();
+    let edge = mesh.connectivity().edge(half);
+    (mesh, edge)
+}
+
+#[test]
+fn a_face_that_turns_over_exactly_is_admitted_below_minus_one_only() {
+    let (mut mesh, edge) = dart();
+    for least in [0.0, -1.0] {
+        mesh.min_cosine = least;
+        assert!(matches!(mesh.flip_edge(edge), Err(Illegal::FoldsOver { .. })), "{least}");
+    }
+    mesh.min_cosine = -1.5;
+    mesh.flip_edge(edge).unwrap();
+}
+
+#[test]
+fn nan_refuses_whatever_changes_a_face() {
+    // With area, and without any.
+    for height in [1.0, 0.0] {
+        let places = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (1.0, 1.0)];
+        let positions = places.map(|(x, y)| DVec3::new(x, y * height, 0.0)).to_vec();
+        let faces = vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mut mesh = EditableMesh::try_from(&TriMesh::try_new(positions, faces).unwrap()).unwrap();
+        let half = mesh.connectivity().find(VertexId(4), VertexId(0)).unwrap();
+        let edge = mesh.connectivity().edge(half);
+        let at = mesh.positions()[4] * 0.75;
+        let refusals = |mesh: &EditableMesh| {
+            [
+                mesh.clone().flip_edge(edge).err(),
+                mesh.clone().split_edge(edge, at).err(),
+                mesh.clone().split_face(FaceId(0), DVec3::new(1.0, 0.5 * height, 0.0)).err(),
+                mesh.clone().collapse_half_edge(half).err(),
+                mesh.clone().remove_vertex(VertexId(4), Hole::Triangles).err(),
+                mesh.clone().remove_vertex(VertexId(4), Hole::Polygon).err(),
+            ]
+        };
+        mesh.min_cosine = -2.0;
+        assert!(refusals(&mesh)[1..].iter().all(Option::is_none), "{height}: {:?}", refusals(&mesh));
+        mesh.min_cosine = f64::NAN;
+        for (operator, refusal) in refusals(&mesh).into_iter().enumerate() {
+            assert!(matches!(refusal, Some(Illegal::FoldsOver { .. })), "{height} {operator}: {refusal:?}");
+        }
+    }
+}
+
+#[test]
+fn mixtures_and_columns_count_against_the_budget() {
+    let refused = |mesh: &EditableMesh, bytes: usize| {
+        let result = mesh.to_triangles(&Exec::default().with_memory(bytes as u64));
+        matches!(result, Err(StructureError::OverBudget(_)))
+    };
+    let mut mixed = EditableMesh::try_from(&grid()).unwrap();
+    let many: Mixture = (0..25).map(|source| (source, 0.04)).collect();
+    mixed.mixed.fill(Some(many));
+    assert_eq!(mixed.source_total(&Exec::default()).unwrap(), 25 * 25);
+    let connectivity = mixed.connectivity().memory_bytes();
+    assert!(refused(&mixed, 2 * connectivity + 25 * 25 * 12));
+    let mut wide = grid();
+    let values = Values::F64(vec![0.5; 25 * 100]);
+    wide.insert_attribute(Domain::Vertex, Column::try_new("wide", 100, values).unwrap()).unwrap();
+    let wide = EditableMesh::try_from(&wide).unwrap();
+    assert!(refused(&wide, 2 * connectivity + 25 * 100 * 8));
+    // Little more will do, and comes back.
+    let exec = Exec::default().with_memory((3 * connectivity + 25 * 100 * 8 + 5000) as u64);
+    assert!(wide.to_triangles(&exec).is_ok() && mixed.to_triangles(&exec).is_ok());
+    assert_eq!(exec.memory_taken(), 0);
+}

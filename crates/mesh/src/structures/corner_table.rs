@@ -84,6 +84,12 @@ impl CornerTable {
         })
     }
 
+    /// The corners opposite to the sides of a triangle: the first side, from corner 0 to corner 1, is opposite to corner 2.
+    fn tips_of_sides(&self, face: FaceId) -> [CornerId; 3] {
+        assert!(face.index() < self.triangles.len(), "there is no {face} among {}", self.triangles.len());
+        [2, 0, 1].map(|i| CornerId(face.0 * 3 + i))
+    }
+
     /// The edge opposite to a corner.
     fn edge_opposite(&self, corner: u32) -> EdgeId {
         EdgeId(corner.min(self.opposites[corner as usize]))
@@ -246,13 +252,12 @@ impl Incidence for CornerTable {
     }
 
     fn face_edges(&self, face: FaceId, visit: &mut Visitor<'_, EdgeId>) -> Answered {
-        // The first side, from corner 0 to corner 1, is opposite to corner 2.
-        visit_each([2, 0, 1].map(|i| self.edge_opposite(face.0 * 3 + i)), visit);
+        visit_each(self.tips_of_sides(face).map(|tip| self.edge_opposite(tip.0)), visit);
         Ok(())
     }
 
     fn face_faces(&self, face: FaceId, visit: &mut Visitor<'_, FaceId>) -> Answered {
-        let near = [2, 0, 1].map(|i| self.opposite(CornerId(face.0 * 3 + i)).map(|tip| self.triangle(tip)));
+        let near = self.tips_of_sides(face).map(|tip| self.opposite(tip).map(|beside| self.triangle(beside)));
         let first = |&i: &usize| near[i].is_some() && !near[..i].contains(&near[i]);
         visit_each((0..3).filter(first).filter_map(|i| near[i]), visit);
         Ok(())
@@ -262,6 +267,15 @@ impl Incidence for CornerTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Three times its number is 2, in 32 bits.
+    #[test]
+    #[should_panic(expected = "there is no")]
+    fn a_triangle_that_is_not_there_is_taken_for_no_other() {
+        let faces = IndexedTriangles::try_new(3, vec![[0, 1, 2]]).unwrap();
+        let table = CornerTable::try_from(&faces).unwrap();
+        let _ = table.answer(Query::FF, 1_431_655_766);
+    }
 
     /// Two triangles, 0 1 2 and 2 1 3, beside each other across the edge 1-2.
     #[test]

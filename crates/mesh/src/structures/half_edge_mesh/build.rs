@@ -1,23 +1,15 @@
 //! Half-edges of lists of faces, and back.
 
-use shapeloom_core::{Exec, parallel};
+use shapeloom_core::Exec;
 
 use super::{Counts, GONE, HalfEdgeMesh, NONE};
 use crate::MeshError;
 use crate::structures::face_list::FaceList;
+use crate::structures::triangle_half_edges::{EdgeFaults, refuse_repeated_corners};
 use crate::structures::{IndexedPolygons, StructureError, sides};
 
-/// Faces that are looked at between two polls, or by one task.
+/// Faces or half-edges that are looked at between two polls.
 const CHUNK: usize = 1 << 14;
-
-/// Edges that cannot be held: the first, and how many.
-#[derive(Default)]
-struct Worst {
-    crowded: Option<([u32; 2], Vec<u32>)>,
-    crowds: usize,
-    turned: Option<([u32; 2], [u32; 2])>,
-    turns: usize,
-}
 
 impl HalfEdgeMesh {
     /// The half-edges of polygons. Faces keep their numbers and first corners, vertices their numbers.
@@ -36,7 +28,7 @@ impl HalfEdgeMesh {
         // Without common edges a corner has two half-edges; beside them stand its pair and its half-edge's number.
         let _memory = exec.reserve_elements(corners as u64, 2 * 16 + 8 + 4)?;
         let _more = exec.reserve_elements(vertices as u64 + faces.face_total() as u64, 8)?;
-        refuse_repeated(faces, exec)?;
+        refuse_repeated_corners(faces, exec)?;
         let pairs = pair_sides(faces, exec)?;
         if pairs.len() >= GONE as usize / 2 {
             return Err(MeshError::TooMany { kind: "half-edges", found: 2 * pairs.len() as u64 }.into());
@@ -161,81 +153,20 @@ impl HalfEdgeMesh {
     }
 }
 
-fn refuse_repeated(faces: &IndexedPolygons, exec: &Exec) -> Result<(), StructureError> {
-    let parts = parallel::map_chunks(exec, faces.face_total(), CHUNK, |chunk| {
-        let (mut first, mut count) = (None, 0);
-        let mut sorted = Vec::new();
-        for face in chunk {
-            if let Some(vertex) = repeated(faces.face(face as u32), &mut sorted) {
-                first.get_or_insert((face as u32, vertex));
-                count += 1;
-            }
-        }
-        Ok::<_, StructureError>((first, count))
-    })?;
-    let count = parts.iter().map(|(_, count)| count).sum();
-    match parts.iter().find_map(|&(first, _)| first) {
-        Some((face, vertex)) => Err(StructureError::RepeatedCorner { face, vertex, count }),
-        None => Ok(()),
-    }
-}
-
-/// A vertex that occurs twice.
-fn repeated(corners: &[u32], sorted: &mut Vec<u32>) -> Option<u32> {
-    if let &[a, b, c] = corners {
-        return if a == b || a == c {
-            Some(a)
-        } else if b == c {
-            Some(b)
-        } else {
-            None
-        };
-    }
-    sorted.clear();
-    sorted.extend_from_slice(corners);
-    sorted.sort_unstable();
-    sorted.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
-}
-
 /// The corners at which the two sides of each edge start; `NONE` for the second on the border.
 fn pair_sides(faces: &IndexedPolygons, exec: &Exec) -> Result<Vec<[u32; 2]>, StructureError> {
     let parts = sides::by_edge(faces, exec, |bucket| {
-        let (mut pairs, mut worst) = (Vec::new(), Worst::default());
+        let (mut pairs, mut faults) = (Vec::new(), EdgeFaults::default());
         bucket.for_each_edge(|edge| {
-            let first = edge.corner(0);
-            if edge.len() == 1 {
-                pairs.push([first, NONE]);
-                return;
-            }
-            if edge.len() > 2 {
-                worst.crowds += 1;
-                worst.crowded.get_or_insert_with(|| {
-                    (edge.vertices, edge.corners().map(|corner| faces.face_of(corner)).collect())
-                });
-                return;
-            }
-            let second = edge.corner(1);
-            if faces.all_corners()[first as usize] == faces.all_corners()[second as usize] {
-                worst.turns += 1;
-                worst
-                    .turned
-                    .get_or_insert_with(|| (edge.vertices, [first, second].map(|corner| faces.face_of(corner))));
-                return;
-            }
-            pairs.push([first, second]);
+            faults.note(&edge, faces);
+            pairs.push([edge.corner(0), if edge.len() == 1 { NONE } else { edge.corner(1) }]);
         });
-        Ok::<_, StructureError>((pairs, worst))
+        Ok::<_, StructureError>((pairs, faults))
     })?;
-    let crowds = parts.iter().map(|(_, worst)| worst.crowds).sum();
-    if let Some((vertices, faces)) = parts.iter().find_map(|(_, worst)| worst.crowded.clone()) {
-        return Err(StructureError::NonManifoldEdge { vertices, faces, count: crowds });
-    }
-    let turns = parts.iter().map(|(_, worst)| worst.turns).sum();
-    if let Some((vertices, faces)) = parts.iter().find_map(|(_, worst)| worst.turned) {
-        return Err(StructureError::Orientation { vertices, faces, count: turns });
-    }
-    let mut pairs = Vec::with_capacity(parts.iter().map(|(pairs, _)| pairs.len()).sum());
-    for (part, _) in parts {
+    let (parts, faults): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    EdgeFaults::refuse(faults)?;
+    let mut pairs = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    for part in parts {
         pairs.extend(part);
     }
     Ok(pairs)

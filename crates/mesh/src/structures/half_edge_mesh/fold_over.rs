@@ -12,7 +12,8 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// that the topological `can_` function said yes.
 ///
 /// A face turns over when the cosine of the angle between its normals before and after is not above `min_cosine`: with
-/// 0 it may turn by less than 90 degrees, with 0.5 by less than 60. A face without area is allowed to get some, or to
+/// 0 it may turn by less than 90 degrees, with 0.5 by less than 60, below −1 by any angle; with NaN every face that an
+/// operator changes turns over. A face without area is allowed to get some, or to
 /// stay without; one with area must not lose it. Polygons have the normal of their Newell vector. Sizes from 1e-300 to
 /// 1e300 are told rightly; where a position is not finite, every operator that would use it turns a face over.
 ///
@@ -33,7 +34,7 @@ impl HalfEdgeMesh {
         let flat = |all: &[Direction]| all.iter().filter(|&&one| one == Direction::None).count();
         let mut spare = flat(&old);
         for (half, direction) in [h, t].into_iter().zip(new) {
-            let flat_still = direction == Direction::None && spare > 0;
+            let flat_still = direction == Direction::None && spare > 0 && !min_cosine.is_nan();
             if flat_still {
                 spare -= 1;
             } else if direction == Direction::None || !whole.admits(direction, min_cosine) || whole == Direction::None {
@@ -135,7 +136,7 @@ impl HalfEdgeMesh {
     /// the hole's outline, and so must each of the triangles that fill it; none are given where it stays a polygon.
     ///
     /// # Errors
-    /// No such vertex, or a face around it that would turn over.
+    /// No such vertex, or a face around it that would turn over; where a triangle would, the first face around it.
     pub(crate) fn removal_folds_over(
         &self,
         vertex: VertexId,
@@ -147,14 +148,19 @@ impl HalfEdgeMesh {
         self.known_vertex(vertex)?;
         let outline: Vec<DVec3> = self.hole_corners(vertex.0).iter().map(|&v| positions[v as usize]).collect();
         let whole = Direction::of(outline.iter().copied());
-        for out in self.fan(vertex.0).filter(|out| self.left(out.0) != NONE) {
+        let mut around = self.fan(vertex.0).map(|out| (out, self.left(out.0))).filter(|&(_, face)| face != NONE);
+        let first = around.clone().next();
+        let turned = around.find(|(out, _)| {
             let old = Direction::of(self.cycle(out.0).map(|side| positions[self.start(side.0) as usize]));
-            let part = |ear: &[u32; 3]| Direction::of(ear.map(|i| outline[i as usize]).into_iter());
-            if !old.admits(whole, min_cosine) || !ears.iter().all(|ear| whole.admits(part(ear), min_cosine)) {
-                return Err(Illegal::FoldsOver { face: FaceId(self.left(out.0)) });
-            }
+            !old.admits(whole, min_cosine)
+        });
+        let part = |ear: &[u32; 3]| Direction::of(ear.map(|i| outline[i as usize]).into_iter());
+        let fills = || ears.iter().all(|ear| whole.admits(part(ear), min_cosine));
+        // An ear is no part of one face: the first stands for all.
+        match turned.or_else(|| first.filter(|_| !fills())) {
+            Some((_, face)) => Err(Illegal::FoldsOver { face: FaceId(face) }),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn one_each(&self, positions: &[DVec3]) {
@@ -199,6 +205,9 @@ impl Direction {
 
     /// Whether a face that looked here may come to look there.
     fn admits(self, new: Self, min_cosine: f64) -> bool {
+        if min_cosine.is_nan() {
+            return false;
+        }
         match (self, new) {
             (Self::Unknown, _) | (_, Self::Unknown) => false,
             (Self::None, _) => true,

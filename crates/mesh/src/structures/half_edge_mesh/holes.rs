@@ -11,7 +11,7 @@ impl HalfEdgeMesh {
     /// Whether [`HalfEdgeMesh::triangulate_face`] is possible.
     ///
     /// # Errors
-    /// No such face, or every triangulation doubles an edge.
+    /// No such face, or every triangulation doubles an edge; beyond 64 corners, every fan.
     pub fn can_triangulate_face(&self, face: FaceId) -> Result<(), Illegal> {
         self.known_face(face)?;
         let corners: Vec<u32> = self.corners(face).map(|vertex| vertex.0).collect();
@@ -57,12 +57,11 @@ impl HalfEdgeMesh {
             let at = |k: usize| ((tip + k) % count) as u32;
             return Ok((1..count - 1).map(|k| [at(0), at(k), at(k + 1)]).collect());
         }
-        let none = Illegal::NoTriangulation { corners: count as u32 };
         if count > EXACT {
-            return Err(none);
+            return Err(Illegal::NoFan { corners: count as u32 });
         }
         let barred: Vec<u64> = (0..count).map(|i| joined(i).fold(0, |bits, j| bits | 1 << j)).collect();
-        any_triangulation(&barred).ok_or(none)
+        any_triangulation(&barred).ok_or(Illegal::NoTriangulation { corners: count as u32 })
     }
 
     /// The first diagonal of these ears that is an edge already.

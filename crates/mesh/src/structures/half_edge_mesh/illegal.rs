@@ -87,6 +87,12 @@ pub enum Illegal {
         /// How many corners the hole has.
         corners: u32,
     },
+    /// No fan cuts the hole by new edges alone: each would double an edge that is there. The hole has so many corners
+    /// that other triangulations were not tried.
+    NoFan {
+        /// How many corners the hole has.
+        corners: u32,
+    },
     /// The normal of a face would turn too far, or the face lose its area.
     FoldsOver {
         /// The face, as it is now.
@@ -134,6 +140,11 @@ impl fmt::Display for Illegal {
             Self::NoTriangulation { corners } => {
                 write!(f, "the hole of {corners} corners: every triangulation doubles an edge that is there")
             }
+            Self::NoFan { corners } => write!(
+                f,
+                "the hole of {corners} corners: every fan doubles an edge that is there; of so many corners other \
+                 triangulations are not tried"
+            ),
             Self::FoldsOver { face } => write!(f, "{face} would turn over or lose its area"),
             Self::NonManifoldEdge { vertices: [a, b] } => {
                 write!(f, "edge {}-{}: found more than two faces, expected at most two", a.0, b.0)
@@ -152,9 +163,10 @@ impl Diagnostic for Illegal {
             Self::BorderEdge { .. } | Self::ClosesBorder { .. } | Self::PinchesBorder { .. } => "E-edit-border",
             Self::NotTriangle { .. } | Self::NotApart { .. } => "E-edit-corners",
             Self::LinkCondition { .. } | Self::SharedFace { .. } | Self::RepeatedCorner { .. } => "E-edit-link",
-            Self::DuplicateEdge { .. } | Self::DuplicateFace { .. } | Self::NoTriangulation { .. } => {
-                "E-edit-duplicate"
-            }
+            Self::DuplicateEdge { .. }
+            | Self::DuplicateFace { .. }
+            | Self::NoTriangulation { .. }
+            | Self::NoFan { .. } => "E-edit-duplicate",
             Self::ValenceTooLow { .. } => "E-edit-valence",
             Self::FoldsOver { .. } => "E-edit-fold",
             Self::NonManifoldEdge { .. } => "E-edit-manifold",

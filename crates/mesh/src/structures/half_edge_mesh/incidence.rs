@@ -1,9 +1,8 @@
 //! The nine queries, all local.
 
-use std::collections::HashSet;
-
 use super::HalfEdgeMesh;
 use crate::structures::incidence::visit_each;
+use crate::structures::once::once;
 use crate::structures::{Answered, Cost, EdgeId, FaceId, Incidence, Query, VertexId, Visitor};
 
 impl HalfEdgeMesh {
@@ -88,9 +87,8 @@ impl Incidence for HalfEdgeMesh {
 
     fn face_faces(&self, face: FaceId, visit: &mut Visitor<'_, FaceId>) -> Answered {
         // Two polygons may share several edges.
-        let mut seen = HashSet::new();
         let beside = self.around_face(face).filter_map(|h| self.face(self.twin(h)));
-        visit_each(beside.filter(|&other| seen.insert(other)), visit);
+        visit_each(once(beside.map(|other| other.0)).map(FaceId), visit);
         Ok(())
     }
 }

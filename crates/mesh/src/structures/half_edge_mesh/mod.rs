@@ -1,4 +1,4 @@
-//! Half-edges that can be edited: connectivity of polygon meshes with borders, and operators of constant time.
+//! Half-edges that can be edited: connectivity of polygon meshes with borders, and local operators.
 
 mod breadth_first;
 mod build;
@@ -161,6 +161,8 @@ impl HalfEdgeMesh {
 
     /// The half-edges of an edge.
     pub fn halves(&self, edge: EdgeId) -> [HalfEdgeId; 2] {
+        // Twice a number that is not there may be one that is, as a wrapped number of 32 bits.
+        assert!(edge.index() < self.edge_slots(), "there is no {edge} among {}", self.edge_slots());
         [HalfEdgeId(2 * edge.0), HalfEdgeId(2 * edge.0 + 1)]
     }
 
@@ -186,7 +188,7 @@ impl HalfEdgeMesh {
 
     /// The vertices of an edge: where its first half starts and where it ends.
     pub fn ends(&self, edge: EdgeId) -> [VertexId; 2] {
-        [VertexId(self.start(2 * edge.0)), VertexId(self.end(2 * edge.0))]
+        self.halves(edge).map(|half| self.origin(half))
     }
 
     /// The face to the left of a half-edge; none on the border.
@@ -212,7 +214,7 @@ impl HalfEdgeMesh {
 
     /// Whether an edge has one face only.
     pub fn is_border_edge(&self, edge: EdgeId) -> bool {
-        self.left(2 * edge.0) == NONE || self.left(2 * edge.0 + 1) == NONE
+        self.halves(edge).into_iter().any(|half| self.is_border(half))
     }
 
     /// Whether a vertex lies on the border. Isolated vertices do not.

@@ -19,7 +19,7 @@ impl HalfEdgeMesh {
     /// # Errors
     /// No such vertex; a hole with a vertex twice, or a border vertex whose neighbours on the border are joined
     /// already; a face with the same corners as another; for triangles, a hole that cannot be cut without doubling an
-    /// edge.
+    /// edge, beyond 64 corners one that no fan cuts so.
     pub fn can_remove_vertex(&self, vertex: VertexId, hole: Hole) -> Result<(), Illegal> {
         self.plan_removal(vertex, hole).map(drop)
     }

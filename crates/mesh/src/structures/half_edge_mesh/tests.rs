@@ -418,3 +418,30 @@ fn a_hub_of_very_many_edges_is_removed_and_made_again() {
     assert!(mesh.validate().is_empty());
     assert_eq!(mesh.counts().faces, 1);
 }
+
+#[test]
+#[should_panic(expected = "there is no")]
+fn an_edge_that_is_not_there_has_no_halves() {
+    let mesh = of(3, &[[0, 1, 2]]);
+    mesh.halves(EdgeId(3));
+}
+
+/// Twice its number is 0, in 32 bits.
+#[test]
+#[should_panic(expected = "there is no")]
+fn an_edge_that_is_not_there_is_taken_for_no_other() {
+    let mesh = of(3, &[[0, 1, 2]]);
+    mesh.ends(EdgeId(1 << 31));
+}
+
+#[test]
+fn beyond_64_corners_it_is_fans_that_were_tried() {
+    let mesh = torus(10, 10);
+    // Each of these has six neighbours, of which two at most are beside it in the outline.
+    let all: Vec<u32> = (0..100).collect();
+    assert_eq!(mesh.plan_ears(&all), Err(Illegal::NoFan { corners: 100 }));
+    assert!(Illegal::NoFan { corners: 100 }.to_string().contains("not tried"));
+    // All of these are joined to each other: no triangulation has new edges.
+    let solid = of(4, &[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]);
+    assert_eq!(solid.plan_ears(&[0, 1, 2, 3]), Err(Illegal::NoTriangulation { corners: 4 }));
+}
