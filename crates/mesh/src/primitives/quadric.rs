@@ -51,7 +51,7 @@ options! {
             v_from: f64 [Bounds::closed(-100.0, 100.0)] = 0.0,
             /// Where v ends.
             v_to: f64 [Bounds::closed(-100.0, 100.0)] = 1.0,
-            /// How many steps along u.
+            /// How many steps along u; at least 3 in a whole turn.
             u_steps: u32 [Bounds::closed(1.0, 32768.0)] = 64,
             /// How many steps along v.
             v_steps: u32 [Bounds::closed(1.0, 32768.0)] = 16,
@@ -64,15 +64,16 @@ impl Quadric {
     ///
     /// A triangle over half a cell of the box of sides h and k is within (h² |r_uu| + 2 h k |r_uv| + k² |r_vv|) / 8 of the
     /// surface at the same parameters (Filip, Magedson and Markot 1986), with the largest second derivatives over the
-    /// box, which are known in closed form; so it is both ways.
+    /// box, which are known in closed form; so it is both ways. Steps count as wider by the rounding of parameters.
     ///
     /// # Errors
-    /// Options out of bounds: a box turned round, more than a turn, v below 0 where there is an apex; over the memory
-    /// budget; cancellation.
+    /// Options out of bounds: a box turned round, more than a turn, a whole turn in fewer than 3 steps, v below 0 where
+    /// there is an apex; over the memory budget; cancellation.
     pub fn mesh(&self, exec: &Exec) -> Result<Converted<PolyMesh>, ConvertError> {
         self.validate()?;
         self.check_box()?;
-        let closed = self.has_axis() && self.u_to - self.u_from == 1.0;
+        let closed = self.is_closed();
+        let [u_from, u_to] = self.u_range();
         let [m, n] = [self.u_steps, self.v_steps];
         let sheets = if self.shape == QuadricShape::TwoSheet { 2 } else { 1 };
         let cells = (u64::from(m) + 1) * (u64::from(n) + 1) * sheets;
@@ -93,7 +94,7 @@ impl Quadric {
                 let v = parameter(self.v_from, self.v_to, j, n);
                 let count = if apex && j == 0 { 1 } else { width };
                 for i in 0..count {
-                    let u = parameter(self.u_from, self.u_to, i, m);
+                    let u = parameter(u_from, u_to, i, m);
                     let point = self.point(u, v) * side;
                     positions.push(point);
                     gradients.push(self.gradient(point));
@@ -147,13 +148,31 @@ impl Quadric {
         matches!(self.shape, QuadricShape::EllipticCone | QuadricShape::TwoSheet)
     }
 
+    /// Whether u makes a whole turn, as near as numbers of that size tell.
+    fn is_closed(&self) -> bool {
+        self.has_axis() && (self.u_to == self.u_from + 1.0 || self.u_from == self.u_to - 1.0)
+    }
+
+    /// Where u begins and ends, about an axis less the whole turns before it, so that steps are not rounded with these.
+    fn u_range(&self) -> [f64; 2] {
+        let turns = if self.has_axis() { self.u_from.trunc() } else { 0.0 };
+        let from = self.u_from - turns;
+        [from, if self.is_closed() { from + 1.0 } else { self.u_to - turns }]
+    }
+
     fn check_box(&self) -> Result<(), OptionError> {
-        let most = if self.has_axis() { self.u_from + 1.0 } else { 1e6 };
+        let most = match self.has_axis() {
+            true if self.is_closed() => self.u_to,
+            true => self.u_from + 1.0,
+            false => 1e6,
+        };
+        let fewest = if self.is_closed() { 3.0 } else { 1.0 };
         let least = if self.has_apex() { 0.0 } else { -100.0 };
         let wanted = [
             ("u_to", self.u_to, Bounds { min: self.u_from, above: true, max: most }),
             ("v_from", self.v_from, Bounds::closed(least, 100.0)),
             ("v_to", self.v_to, Bounds { min: self.v_from, above: true, max: 100.0 }),
+            ("u_steps", f64::from(self.u_steps), Bounds::closed(fewest, 32768.0)),
         ];
         match wanted.into_iter().find(|(_, found, bounds)| !bounds.contains(*found)) {
             Some((name, found, bounds)) => Err(OptionError::OutOfBounds { algorithm: Self::NAME, name, found, bounds }),
@@ -194,8 +213,12 @@ impl Quadric {
 
     fn chord_error(&self) -> f64 {
         let turn = if self.has_axis() { TAU } else { 1.0 };
-        let h = (self.u_to - self.u_from) / f64::from(self.u_steps) * turn;
-        let k = (self.v_to - self.v_from) / f64::from(self.v_steps);
+        // Parameters are rounded, so that steps differ.
+        let widest = |[from, to]: [f64; 2], count: u32| {
+            (to - from) / f64::from(count) + 4.0 * f64::EPSILON * f64::max(from.abs(), to.abs())
+        };
+        let h = widest(self.u_range(), self.u_steps) * turn;
+        let k = widest([self.v_from, self.v_to], self.v_steps);
         let wide = self.a.max(self.b);
         let far = self.v_from.abs().max(self.v_to.abs());
         let [uu, uv, vv] = match self.shape {
@@ -351,6 +374,12 @@ mod tests {
         assert_eq!(border(&with(QuadricShape::TwoSheet)), (24, 2));
         assert_eq!(border(&with(QuadricShape::HyperbolicParaboloid)), (34, 1));
         assert_eq!(border(&Quadric { u_to: 0.5, ..with(QuadricShape::OneSheet) }), (34, 1));
+        // Neither 1.4 - 0.4 nor -0.7 + 1 is what it would be without rounding.
+        for (u_from, u_to) in [(0.4, 1.4), (-0.7, 0.3), (1e6 - 1.3, 1e6 - 0.3), (-1e6, 1.0 - 1e6)] {
+            for (shape, made) in [(QuadricShape::OneSheet, (24, 0)), (QuadricShape::EllipticCone, (12, 1))] {
+                assert_eq!(border(&Quadric { u_from, u_to, ..with(shape) }), made, "{u_from}");
+            }
+        }
         for wrong in [
             Quadric { v_from: -0.1, ..with(QuadricShape::EllipticCone) },
             Quadric { u_to: 1.01, ..with(QuadricShape::OneSheet) },
@@ -360,5 +389,42 @@ mod tests {
         ] {
             assert!(wrong.mesh(&Exec::default()).is_err());
         }
+    }
+
+    #[test]
+    fn whole_turns_take_three_steps() {
+        let with = |shape, u_to, u_steps| Quadric { shape, u_to, u_steps, ..Quadric::new() }.mesh(&Exec::default());
+        for shape in [QuadricShape::EllipticCylinder, QuadricShape::EllipticCone, QuadricShape::TwoSheet] {
+            for u_steps in [1, 2] {
+                let bounds = Bounds::closed(3.0, 32768.0);
+                let (algorithm, found) = (Quadric::NAME, f64::from(u_steps));
+                let error = OptionError::OutOfBounds { algorithm, name: "u_steps", found, bounds };
+                assert_eq!(with(shape, 1.0, u_steps).unwrap_err().to_string(), ConvertError::from(error).to_string());
+                assert!(with(shape, 0.9, u_steps).is_ok());
+            }
+            assert!(with(shape, 1.0, 3).is_ok());
+        }
+        assert!(with(QuadricShape::EllipticParaboloid, 1.0, 1).is_ok());
+    }
+
+    #[test]
+    fn steps_are_as_equal_after_many_turns() {
+        let with = |u_from: f64, shape| Quadric { shape, u_from, u_to: u_from + 1.0, ..Quadric::new() };
+        let fine = Quadric { u_steps: 32768, v_steps: 1, ..with(1e6 - 1.0, QuadricShape::EllipticCylinder) };
+        let Converted { value: mesh, report } = fine.mesh(&Exec::default()).unwrap();
+        let bound = report.deviation.value().unwrap();
+        for i in 0..32768 {
+            let middle = mesh.positions()[i].midpoint(mesh.positions()[(i + 1) % 32768]);
+            assert!(1.0 - middle.truncate().length() <= bound, "{i}");
+        }
+        let near = Quadric { u_from: 0.0, u_to: 1.0, ..fine.clone() }.mesh(&Exec::default()).unwrap();
+        assert_eq!((near.value.positions(), near.report.deviation), (mesh.positions(), report.deviation));
+        // About no axis nothing can be subtracted: the widest step counts.
+        let far = Quadric { u_steps: 32768, ..with(1e6 - 1.0, QuadricShape::EllipticParaboloid) };
+        let mesh = far.mesh(&Exec::default()).unwrap();
+        let x = |i: usize| mesh.value.positions()[i].x;
+        let widest = (0..32768).map(|i| x(i + 1) - x(i)).fold(0.0, f64::max);
+        let k = 1.0 / 16.0;
+        assert!(mesh.report.deviation.value().unwrap() >= (2.0 * widest * widest + 2.0 * k * k) / 8.0);
     }
 }
