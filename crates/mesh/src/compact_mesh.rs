@@ -24,7 +24,8 @@ options! {
     }
 }
 
-/// The fewest bits that keep vertices within the tolerance; 32 at most.
+/// The fewest bits whose steps keep vertices within the tolerance; 32 at most. Far from the origin numbers themselves may be
+/// coarser than the tolerance: then no bits keep vertices within it, and the report has how far they move.
 impl FromTolerance<TriMesh> for Compact {
     fn from_tolerance(source: &TriMesh, tolerance: f64) -> Self {
         let bounds = source.bounds();
@@ -127,8 +128,12 @@ impl Compact {
             moved = moved.max(2.0 * length(made.unpacked(vertex as u64) * 0.5 - position * 0.5));
         }
         let mut report = Report::exact(Compact::NAME, "every position is a step of the store");
-        if moved > 0.0 {
-            report.deviation = Deviation::AtMost(moved * (1.0 + 8.0 * f64::EPSILON));
+        let bound = moved * (1.0 + 8.0 * f64::EPSILON);
+        if bound.is_infinite() {
+            report.deviation = Deviation::Unknown;
+            report.basis = "a vertex moves as far as the largest number, or farther".to_owned();
+        } else if moved > 0.0 {
+            report.deviation = Deviation::AtMost(bound);
             report.basis = "the largest move of a vertex, at most half the diagonal of a step and rounding".to_owned();
         }
         for (triangle, corners) in source.triangles().iter().enumerate() {
@@ -171,9 +176,16 @@ impl Convert<TriMesh> for Compact {
 
     fn convert_with(&self, source: &TriMesh, exec: &Exec) -> Result<Converted<TriMesh>, ConvertError> {
         let Converted { value: store, mut report } = self.pack(source, exec)?;
-        let _memory = exec.reserve(source.memory_bytes() as u64)?;
+        let _memory = exec.reserve((source.memory_bytes() as u64).saturating_add(store.memory_bytes() as u64))?;
         report.losses.clear();
-        let positions = (0..u64::from(store.vertices)).map(|vertex| store.unpacked(vertex)).collect();
+        let mut positions = Vec::with_capacity(store.vertices as usize);
+        for vertex in 0..u64::from(store.vertices) {
+            if vertex.is_multiple_of(4096) {
+                exec.check()?;
+            }
+            positions.push(store.unpacked(vertex));
+        }
+        exec.check()?;
         let mesh = TriMesh::with_attributes(positions, source.triangles().to_vec(), source.attributes().clone())?;
         Ok(Converted::new(mesh, report))
     }
@@ -200,15 +212,16 @@ impl CompactMesh {
         self.triangles
     }
 
-    /// How far apart neighbouring positions are along each axis.
+    /// How far apart neighbouring positions are along each axis; the largest number where that is more.
     pub fn step(&self) -> DVec3 {
-        self.half_step * 2.0
+        (self.half_step * 2.0).min(DVec3::MAX)
     }
 
     fn unpacked(&self, vertex: u64) -> DVec3 {
         let at = |axis: u64| read(&self.coordinates, 3 * vertex + axis, self.bits) as f64;
         let half_way = self.half_step * DVec3::new(at(0), at(1), at(2));
-        self.lowest + half_way + half_way
+        // Rounding may take the last step past all numbers.
+        (self.lowest + half_way + half_way).min(DVec3::MAX)
     }
 
     /// The position of a vertex, in constant time; none if there is no such vertex.
@@ -323,8 +336,12 @@ mod tests {
             let mesh = torus().transformed(&map);
             for bits in [1, 12, 31, 32] {
                 let made = Compact::new(bits).convert(&mesh).unwrap();
-                let (bound, half) =
-                    (made.report.deviation.value().unwrap(), made.report.find("half_step_diagonal").unwrap());
+                let half = made.report.find("half_step_diagonal").unwrap();
+                // Moves may be farther than any number.
+                let Some(bound) = made.report.deviation.value() else {
+                    assert!(bits == 1 && half.is_infinite());
+                    continue;
+                };
                 // Far away numbers themselves are coarser than steps.
                 let rounding = 2e-16 * mesh.bounds().max.abs().max_element() * 2.0;
                 assert!(bound <= half * (1.0 + 1e-6) + rounding, "{bits} {bound} {half}");
@@ -337,5 +354,36 @@ mod tests {
         assert!(Compact::new(8).pack(&nan, &Exec::default()).is_err());
         assert!(Compact::new(0).pack(&nan, &Exec::default()).is_err());
         assert!(Compact::new(33).pack(&nan, &Exec::default()).is_err());
+    }
+
+    #[test]
+    fn boxes_across_all_numbers_have_finite_places() {
+        for most in [1.7e308, f64::MAX] {
+            let positions = [-most, most, 0.0, most / 3.0].map(|x| DVec3::new(x, 0.0, 0.0)).to_vec();
+            let mesh = TriMesh::try_new(positions, vec![[0, 1, 2]]).unwrap();
+            for bits in 1..=32 {
+                let Converted { value: store, report } = Compact::new(bits).pack(&mesh, &Exec::default()).unwrap();
+                for vertex in 0..4 {
+                    assert!(store.position(vertex).unwrap().is_finite(), "{most} {bits} {vertex}");
+                }
+                assert!(store.step().is_finite(), "{most} {bits} {}", store.step());
+                // With one bit the vertex in the middle goes to an end.
+                let farthest = bits == 1 && most == f64::MAX;
+                assert_eq!(report.deviation.value().is_some_and(f64::is_finite), !farthest, "{most} {bits}");
+                assert!(!farthest || report.deviation == Deviation::Unknown);
+            }
+        }
+    }
+
+    #[test]
+    fn the_store_counts_while_the_mesh_is_made() {
+        let mesh = torus();
+        let store = Compact::new(32).pack(&mesh, &Exec::default()).unwrap().value.memory_bytes() as u64;
+        let bytes = mesh.memory_bytes() as u64;
+        let with = |memory: u64| Compact::new(32).convert_with(&mesh, &Exec::default().with_memory(memory));
+        assert!(with(bytes).is_err() && with(bytes + store - 1).is_err() && with(bytes + store).is_ok());
+        let packed = crate::poll_count::polls(&|exec| drop(Compact::new(9).pack(&mesh, exec).unwrap()));
+        let converted = crate::poll_count::polls(&|exec| drop(Compact::new(9).convert_with(&mesh, exec).unwrap()));
+        assert!(converted > packed);
     }
 }

@@ -13,6 +13,8 @@
 //! - [`EditableMesh`]: flips, splits and collapses of constant time, with positions and attributes.
 //! - [`primitives`]: ready shapes with closed-form facts.
 
+#[cfg(test)]
+mod poll_count;
 pub mod primitives;
 pub mod structures;
 

@@ -72,7 +72,10 @@ impl QuadGrid {
         let seam = self.closed[0] || self.closed[1];
         let part = |i: u32, axis: usize| f64::from(i) / f64::from(cells[axis]);
         let mut used = vec![false; self.points.len()];
-        let (mut corners, mut coordinates) = (Vec::new(), Vec::new());
+        // No list grows beyond what is reserved.
+        let wedges = 4 * cells[0] as usize * cells[1] as usize;
+        let mut corners = Vec::with_capacity(wedges);
+        let mut coordinates = Vec::with_capacity(if seam { wedges } else { self.points.len() });
         for row in 0..cells[1] {
             exec.check()?;
             exec.progress(f64::from(row) / f64::from(cells[1]));
@@ -90,7 +93,7 @@ impl QuadGrid {
             }
         }
         let mut vertex_of = vec![u32::MAX; self.points.len()];
-        let mut positions = Vec::new();
+        let mut positions = Vec::with_capacity(self.points.len());
         for (id, point) in self.points.iter().enumerate().filter(|(id, _)| used[*id]) {
             vertex_of[id] = positions.len() as u32;
             positions.push(*point);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
-    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Loss, Options, Report, options,
+    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Loss, Options, Report, Stop, options,
 };
 
 use crate::collapsed::leave_traces;
@@ -83,7 +83,10 @@ impl Weld {
         exec: &Exec,
     ) -> Result<Welded, ConvertError> {
         self.validate()?;
-        if let Some(vertex) = positions.iter().position(|position| !position.is_finite()) {
+        let mut stop = None;
+        let infinite = polled(positions.iter(), exec, &mut stop).position(|position| !position.is_finite());
+        stopped(stop)?;
+        if let Some(vertex) = infinite {
             return Err(MeshError::NotFinite { kind: "vertex", index: vertex as u64 }.into());
         }
         // The hash table takes about 48 bytes a vertex; the result at most what the source takes, and once more for
@@ -91,23 +94,27 @@ impl Weld {
         let _memory = exec.reserve((positions.len() as u64 * 64).saturating_add(3 * bytes))?;
         let groups = self.group(positions, exec)?;
         exec.check()?;
-        let moved = (0..groups.of.len())
+        let moved = polled(0..groups.of.len(), exec, &mut stop)
             .map(|vertex| positions[vertex].distance(positions[groups.leader(vertex)]))
             .fold(0.0, f64::max);
-        let kept = self.merge_corners(faces.clone(), &groups);
+        stopped(stop)?;
+        let kept = self.merge_corners(polled(faces.clone(), exec, &mut stop), &groups);
+        stopped(stop)?;
         let mut report = Report::new(Self::NAME, Deviation::Exact, "only vertices of equal position merge");
         if moved > 0.0 {
             report.deviation = Deviation::AtMost(moved);
             report.basis = "the largest move of a vertex".to_owned();
         }
         let left = kept.starts.windows(2).map(|pair| &kept.corners[pair[0] as usize..pair[1] as usize]);
-        if !leave_traces(&kept.gone, left) {
+        let all_traced = leave_traces(&kept.gone, polled(left, exec, &mut stop));
+        stopped(stop)?;
+        if !all_traced {
             report.deviation = Deviation::Unknown;
             report.basis = "parts of the surface collapsed to points or segments and were dropped".to_owned();
         }
         exec.check()?;
         let mut attributes = attributes.clone();
-        promote_disagreeing(&mut attributes, faces.flatten().copied(), &groups, &mut report);
+        promote_disagreeing(&mut attributes, faces.flatten().copied(), &groups, &mut report, exec)?;
         let origins = MeshOrigins {
             vertex: Origins::Copies(groups.leaders.clone()),
             face: Origins::Copies(kept.faces),
@@ -236,11 +243,17 @@ fn promote_disagreeing(
     corners: impl Iterator<Item = u32>,
     groups: &Groups,
     report: &mut Report,
-) {
-    let disagree = |column: &Column| (0..groups.of.len()).any(|vertex| !column.same(vertex, groups.leader(vertex)));
+    exec: &Exec,
+) -> Result<(), Stop> {
+    let mut stop = None;
+    let mut disagree = |column: &&Column| {
+        polled(0..groups.of.len(), exec, &mut stop).any(|vertex| !column.same(vertex, groups.leader(vertex)))
+    };
     let names: Vec<String> =
-        attributes.vertex.iter().filter(|column| disagree(column)).map(|column| column.name().to_owned()).collect();
-    let corners: Vec<u32> = if names.is_empty() { Vec::new() } else { corners.collect() };
+        attributes.vertex.iter().filter(&mut disagree).map(|column| column.name().to_owned()).collect();
+    stopped(stop)?;
+    let corners: Vec<u32> = if names.is_empty() { Vec::new() } else { polled(corners, exec, &mut stop).collect() };
+    stopped(stop)?;
     for name in names {
         let what = format!("vertex attribute \"{name}\"");
         if attributes.wedge.get(&name).is_some() {
@@ -249,13 +262,31 @@ fn promote_disagreeing(
             attributes.wedge.insert(column.gathered(&corners)).expect("a wedge for each corner, and the name is free");
         }
     }
-    let disagree = |list: &&ListColumn| (0..groups.of.len()).any(|vertex| !list.same(vertex, groups.leader(vertex)));
+    let disagree = |list: &&ListColumn| {
+        polled(0..groups.of.len(), exec, &mut stop).any(|vertex| !list.same(vertex, groups.leader(vertex)))
+    };
     let lists = attributes.vertex.lists().iter().filter(disagree);
     let names: Vec<String> = lists.map(|list| list.name().to_owned()).collect();
+    stopped(stop)?;
     for name in names {
         attributes.vertex.remove_list(&name);
         report.losses.push(Loss::new(format!("vertex list \"{name}\""), "merged vertices disagree"));
     }
+    Ok(())
+}
+
+/// The items, with a poll before every 4096th; at a stop they end, and `stop` has why.
+fn polled<T>(items: impl Iterator<Item = T>, exec: &Exec, stop: &mut Option<Stop>) -> impl Iterator<Item = T> {
+    items.enumerate().map_while(move |(index, item)| {
+        if index.is_multiple_of(4096) {
+            *stop = exec.check().err();
+        }
+        stop.is_none().then_some(item)
+    })
+}
+
+fn stopped(stop: Option<Stop>) -> Result<(), Stop> {
+    stop.map_or(Ok(()), Err)
 }
 
 #[cfg(test)]
@@ -400,6 +431,27 @@ mod tests {
             let polygons = weld.convert(&PolyMesh::from(mesh.clone())).unwrap();
             assert_eq!(PolyMesh::from(triangles.value), polygons.value, "{distance}");
             assert_eq!(triangles.report.deviation, polygons.report.deviation, "{distance}");
+        }
+    }
+
+    /// Grouping, finding infinite coordinates, moves, merging of faces and traces poll each.
+    #[test]
+    fn every_loop_polls() {
+        let count = 50 * 4096u32;
+        let positions = (0..count).map(|i| DVec3::splat(f64::from(i / 4))).collect();
+        let triangles = (0..count).map(|i| [i, (i + 4) % count, (i + 8) % count]).collect();
+        let mut mesh = TriMesh::try_new(positions, triangles).unwrap();
+        let plain = crate::poll_count::polls(&|exec| drop(Weld::new().convert_with(&mesh, exec).unwrap()));
+        assert!(plain >= 4 * 50, "{plain}");
+        mesh.insert_attribute(Domain::Vertex, Column::labels("quarter", (0..count).map(|i| i / 4).collect())).unwrap();
+        let labelled = crate::poll_count::polls(&|exec| drop(Weld::new().convert_with(&mesh, exec).unwrap()));
+        assert!(labelled >= plain + 50, "{labelled}");
+        for stop_at in [1, 60, 110, 160, labelled - 10] {
+            let seen = std::sync::atomic::AtomicU64::new(0);
+            let exec = Exec::default().with_watch(move || {
+                (seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= stop_at).then_some(Stop::Cancelled)
+            });
+            assert!(Weld::new().convert_with(&mesh, &exec).is_err(), "{stop_at}");
         }
     }
 }

@@ -307,8 +307,11 @@ impl<'a> Refinement<'a> {
             exec.reserve(points.saturating_mul(40).saturating_add(triangles.saturating_mul(12)).saturating_mul(2))?;
         let mut output = Output::new(self.field, total);
         let mut vertex_of = vec![NONE; self.mesh.points().len()];
+        let mut polled = None;
         for index in 0..count {
-            if index % 4096 == 0 {
+            // A cell may be millions of triangles.
+            let done = (index + output.triangles.len()) / 4096;
+            if polled.replace(done) != Some(done) {
                 exec.check()?;
                 exec.progress(index as f64 / count as f64);
             }

@@ -289,3 +289,16 @@ fn no_triangle_is_forgotten() {
         assert_covered(&steps, f64::from(few - 1) * (0.05 + dice.unit()));
     }
 }
+
+/// A few cells of many triangles.
+#[test]
+fn polls_are_as_many_as_triangles() {
+    let mut dice = Dice(9);
+    let noise = field(5, 4, |_| dice.unit());
+    let polls = |max_cell_steps| {
+        let options = GreedyInsertion { max_cell_steps, ..GreedyInsertion::new(0.0) };
+        crate::poll_count::polls(&|exec| drop(options.convert_with(&noise, exec).unwrap()))
+    };
+    // Each of the 12 cells becomes 20 thousand triangles.
+    assert!(polls(100) >= polls(1) + 10, "{} {}", polls(100), polls(1));
+}

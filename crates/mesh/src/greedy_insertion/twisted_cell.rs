@@ -16,7 +16,12 @@ impl CellCut {
     /// The cut with the fewest steps that is within the tolerance for a cell of that twist, and at most `most` steps.
     pub(super) fn new(twist: f64, tolerance: f64, most: u32) -> Self {
         let wanted = (twist.abs() / 4.0 / tolerance).sqrt().ceil();
-        Self { steps: if wanted < f64::from(most) { (wanted as u32).max(1) } else { most } }
+        let mut cut = Self { steps: if wanted <= f64::from(most) { (wanted as u32).max(2) - 1 } else { most } };
+        // The root may be rounded past a whole number, either way.
+        while cut.error(twist) > tolerance && cut.steps < most {
+            cut.steps += 1;
+        }
+        cut
     }
 
     /// How far its triangles are from the surface at most.
@@ -120,5 +125,14 @@ mod tests {
         assert_eq!(CellCut::new(1.0, 0.0, 7).steps, 7);
         assert_eq!(CellCut::new(0.0, 0.0, 7).steps, 7);
         assert_eq!(CellCut::new(1e-3, 1.0, 7).steps, 1);
+    }
+
+    #[test]
+    fn tolerances_just_below_a_bound_take_one_step_more() {
+        for steps in 1..=100u32 {
+            let bound = CellCut { steps }.error(1.0);
+            assert_eq!(CellCut::new(1.0, bound, 1000).steps, steps);
+            assert_eq!(CellCut::new(1.0, bound.next_down(), 1000).steps, steps + 1);
+        }
     }
 }

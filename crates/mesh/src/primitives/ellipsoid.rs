@@ -12,7 +12,8 @@ use crate::{Column, Domain, MeshError, PolyMesh, TEXCOORD};
 choice! {
     /// How a sphere is cut into facets.
     pub enum SphereCut {
-        /// The faces of an icosahedron, cut into steps squared and put on the sphere: nearly equal triangles.
+        /// The faces of an icosahedron, cut into steps squared and put on the sphere: triangles whose areas are
+        /// within a factor of about 2.
         Icosphere = "icosphere",
         /// Along meridians and parallels: four times as many meridians as steps, twice as many bands.
         Meridians = "meridians",
@@ -69,7 +70,10 @@ impl Ellipsoid {
         let (mut normals, mut coordinates) = (Vec::with_capacity(corners.len()), Vec::with_capacity(corners.len()));
         let axes = DVec3::new(self.a, self.b, self.c);
         let longest = axes.max_element();
-        for bounds in starts.windows(2) {
+        for (index, bounds) in starts.windows(2).enumerate() {
+            if index % 4096 == 0 {
+                exec.check()?;
+            }
             let facet = &corners[bounds[0] as usize..bounds[1] as usize];
             let [p, q, r] = [facet[0], facet[1], facet[2]].map(|vertex| unit[vertex as usize]);
             nearest = nearest.min((q - p).cross(r - p).normalize_or_zero().dot(p).abs());
@@ -107,10 +111,10 @@ fn icosphere(steps: u32, exec: &Exec) -> Result<Facets, ConvertError> {
     let mut on_sides: HashMap<(u32, u32, u32), u32> = HashMap::new();
     let mut faces = FaceList::new();
     for face in solid.faces() {
-        exec.check()?;
         let [a, b, c] = [face[0], face[1], face[2]];
         let mut rows: Vec<Vec<u32>> = Vec::new();
         for j in 0..=steps {
+            exec.check()?;
             let mut row = Vec::new();
             for i in 0..=steps - j {
                 let weights = [(a, steps - i - j), (b, i), (c, j)];
@@ -167,7 +171,6 @@ fn cube_sphere(steps: u32, exec: &Exec) -> Result<Facets, ConvertError> {
     let mut faces = FaceList::new();
     for axis in 0..3 {
         for side in [0, steps] {
-            exec.check()?;
             let mut vertex = |i: u32, j: u32| {
                 let mut place = [0; 3];
                 place[axis] = side;
@@ -179,6 +182,7 @@ fn cube_sphere(steps: u32, exec: &Exec) -> Result<Facets, ConvertError> {
                 })
             };
             for j in 0..steps {
+                exec.check()?;
                 for i in 0..steps {
                     let [a, b, c, d] = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| vertex(i + x, j + y));
                     // Diagonals towards the middle of the face are the longer ones.
@@ -304,5 +308,29 @@ mod tests {
         assert!(Ellipsoid { steps: 0, ..Ellipsoid::new() }.mesh(&Exec::default()).is_err());
         let small = Exec::default().with_memory(1000);
         assert!(Ellipsoid { steps: 4096, ..Ellipsoid::new() }.mesh(&small).is_err());
+    }
+
+    #[test]
+    fn triangles_of_icospheres_are_within_a_factor_of_two() {
+        let mesh = made(SphereCut::Icosphere, 40, [1.0; 3]).value;
+        let areas = (0..mesh.face_count()).map(|face| crate::newell_vector(mesh.outline(face)).length());
+        let (least, most) = areas.fold((f64::MAX, 0.0), |(low, high), area| (area.min(low), area.max(high)));
+        assert!(most / least > 1.7 && most / least < 2.1, "{}", most / least);
+    }
+
+    #[test]
+    fn polls_are_as_many_as_facets() {
+        for cut in CUTS {
+            let ellipsoid = Ellipsoid { cut, steps: 100, ..Ellipsoid::new() };
+            let facets = ellipsoid.mesh(&Exec::default()).unwrap().value.face_count() as u64;
+            let sphere = Sphere { radius: 1.0, segments: 400, bands: 200 };
+            let before = if cut == SphereCut::Meridians {
+                crate::poll_count::polls(&|exec| drop(sphere.mesh(exec).unwrap()))
+            } else {
+                6 * 100
+            };
+            let polls = crate::poll_count::polls(&|exec| drop(ellipsoid.mesh(exec).unwrap()));
+            assert!(polls >= before + facets / 4096, "{cut:?} {polls}");
+        }
     }
 }
