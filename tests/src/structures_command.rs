@@ -30,6 +30,25 @@ fn structures_are_listed_with_their_size_and_ranked() {
     assert_eq!(ranking.len() + unranked + unheld, structures.len());
 }
 
+/// Coordinates count: a soup has each six times, so that it is no small structure.
+#[test]
+fn size_counts_with_coordinates() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = torus(&folder);
+    let object = run(&["structures", &path, "--triangles", "--json", "--mix", "updates=100,size=1"]).json();
+    let ranking = object["ranking"].as_array().expect("a list");
+    let of = |name: &str| ranking.iter().find(|one| one["name"] == name).expect("it is ranked").clone();
+    let ratio = |one: &serde_json::Value| {
+        one["weighed_by_size"].as_f64().expect("a number") / one["seconds"].as_f64().expect("a number")
+    };
+    // 144 bytes a vertex beside 24 for coordinates and 24 for indices, the least that there is.
+    assert!((ratio(&of("triangle soup")) / ratio(&of("indexed triangles")) - 3.0).abs() < 1e-9);
+    let refused = run(&["structures", &path, "--method", "weld"]);
+    assert!(refused.code == 2 && refused.err.contains("--method weld"), "{}", refused.err);
+    assert_eq!(run(&["check", &path, "--set", "distance=1"]).code, 2);
+    assert_eq!(run(&["structures", &data("teapot.bpt"), "--method", "nonsense"]).code, 2);
+}
+
 #[test]
 fn what_a_structure_cannot_hold_is_named() {
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -183,7 +183,8 @@ pub(crate) struct StructuresArguments {
     /// The file to read, or - for standard input
     pub(crate) input: PathBuf,
     /// What the structures are ranked for: how often each of VV, VE, VF, EV, EE, EF, FV, FE, FF is asked, queries=N for all nine
-    /// alike, updates=N for changes of the mesh, size=W to count a structure of twice the size as 2^W times as slow
+    /// alike, updates=N for changes of the mesh, size=W to count a structure of twice the size, coordinates
+    /// included, as 2^W times as slow
     #[arg(long, value_name = "KEY=N,...", default_value = "queries=1e6")]
     pub(crate) mix: String,
     /// Cut polygons into triangles first, so that structures of triangles can hold them

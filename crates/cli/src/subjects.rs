@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
-use shapeloom_convert::{Job, convert_shape, plan};
+use shapeloom_convert::{Job, PlanError, convert_shape, plan};
 use shapeloom_core::{Category, Convert, Exec};
 use shapeloom_mesh::{PolyMesh, TriMesh, Weld};
 use shapeloom_shape::{Geometry, Kind, Shape};
@@ -50,6 +50,10 @@ pub(crate) fn subjects(
     exec: &Exec,
     words: &mut Vec<String>,
 ) -> Result<Vec<Subject>, Failure> {
+    let is_mesh = |kind: Kind| matches!(kind, Kind::TriMesh | Kind::PolyMesh);
+    if !shape.parts.is_empty() && shape.kinds().into_iter().all(is_mesh) {
+        nothing_to_convert(job)?;
+    }
     let mut found = Vec::new();
     for (index, part) in shape.parts.iter().enumerate() {
         let named = match part.name.is_empty() {
@@ -80,6 +84,17 @@ pub(crate) fn subjects(
         }
     }
     Ok(found)
+}
+
+/// Refuses what says how to convert where meshes are taken as they are.
+fn nothing_to_convert(job: &Job) -> Result<(), Failure> {
+    let found = match (&job.wish.method, job.settings.first()) {
+        (Some(method), _) => format!("--method {method}"),
+        (None, Some((key, _))) => format!("--set {key}"),
+        (None, None) => return Ok(()),
+    };
+    let message = format!("found {found}, expected none: the input is a mesh already, and is taken as it is");
+    Err(Failure::usage("E-usage-setting", message))
 }
 
 /// One mesh of all, numbered on from one to the next.
@@ -137,8 +152,12 @@ fn meshed(shape: &Shape, index: usize, job: &Job, exec: &Exec) -> Result<Option<
     let part = &shape.parts[index];
     match part.geometry.kind() {
         Kind::TriMesh | Kind::PolyMesh => Ok(Some((part.placed(), None))),
-        kind if plan(kind, &job.wish).is_err() => Ok(None),
         kind => {
+            match plan(kind, &job.wish) {
+                Err(error @ PlanError::UnknownMethod { .. }) => return Err(error.into()),
+                Err(_) => return Ok(None),
+                Ok(_) => {}
+            }
             let alone = Shape { parts: vec![part.clone()], ..shape.clone() };
             let conversion = convert_shape(&alone, job, exec)?;
             let remark = format!("the {kind} is taken as triangles, error {}", conversion.deviation);

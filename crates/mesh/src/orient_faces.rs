@@ -2,7 +2,7 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
-    Convert, ConvertError, Converted, Deviation, Exec, Findings, FromTolerance, Options, Place, Report, Severity,
+    Aabb, Convert, ConvertError, Converted, Deviation, Exec, Findings, FromTolerance, Options, Place, Report, Severity,
     choice, options,
 };
 
@@ -69,16 +69,17 @@ impl OrientFaces {
         for (part, ring) in &orientation.one_sided {
             one_sided[*part as usize] = true;
             let place = Place::element("face", u64::from(ring[0]));
-            let text = format!("a ring of {} faces turns over: its part has no orientation and is left", ring.len());
+            let text = "a ring of faces turns over: the part has no orientation, and is left as it is";
             findings.push("W-orient-one-sided", Severity::Warning, place, text);
         }
+        let scale = scale_of(positions);
         let mut sums = vec![Part::default(); parts];
         for face in 0..faces.face_total() as u32 {
             if face % 4096 == 0 {
                 exec.check()?;
             }
             let against = orientation.against[face as usize];
-            sums[orientation.components[face as usize] as usize].add(faces.face(face), positions, against);
+            sums[orientation.components[face as usize] as usize].add(faces.face(face), positions, scale, against);
         }
         let turn_all: Vec<bool> = (0..parts)
             .map(|part| match self.outside {
@@ -113,14 +114,26 @@ struct Part {
 }
 
 impl Part {
-    fn add(&mut self, corners: &[u32], positions: &[DVec3], against: bool) {
+    fn add(&mut self, corners: &[u32], positions: &[DVec3], scale: f64, against: bool) {
         self.faces += 1;
         self.against += usize::from(against);
-        let origin = *self.origin.get_or_insert(positions[corners[0] as usize]);
-        let corner = |i: usize| positions[corners[i] as usize] - origin;
+        let at = |i: usize| positions[corners[i] as usize] * scale;
+        let origin = *self.origin.get_or_insert_with(|| at(0));
+        let corner = |i: usize| at(i) - origin;
         let volume: f64 = (1..corners.len() - 1).map(|i| corner(0).dot(corner(i).cross(corner(i + 1)))).sum();
         self.volume += if against { -volume } else { volume };
     }
+}
+
+/// A power of two that brings the mesh to a size of about 1, so that volumes neither overflow nor vanish.
+fn scale_of(positions: &[DVec3]) -> f64 {
+    let bounds = Aabb::from_points(positions.iter().copied());
+    if bounds.is_empty() {
+        return 1.0;
+    }
+    let size = (bounds.max / 2.0 - bounds.min / 2.0).max_element();
+    let exponent = if size > 0.0 { size.log2().floor() } else { 0.0 };
+    2f64.powi(-exponent.clamp(-1000.0, 1000.0) as i32)
 }
 
 /// The corners of all faces in the order after the turn, by where they were.
@@ -210,6 +223,17 @@ mod tests {
         // Most faces of the reversed torus agree to look inward.
         let kept = OrientFaces::new().convert(&shuffled(&torus, |face| face % 3 != 0)).unwrap().value;
         assert_eq!(kept.volume(), bare.reversed().volume());
+    }
+
+    #[test]
+    fn volumes_of_any_size_tell_inside_from_outside() {
+        let torus = Torus { segments: 8, sides: 6, ..Torus::new() }.mesh(&Exec::default()).unwrap().value;
+        let volume = OrientFaces { outside: Outside::Volume, ..OrientFaces::new() };
+        for size in [1e-300, 1e-110, 1.0, 1e110, 1e307] {
+            let scaled = torus.transformed(&shapeloom_core::Affine::from_scale(DVec3::splat(size)));
+            let oriented = volume.convert(&scaled.reversed()).unwrap().value;
+            assert_eq!(oriented.wedge_vertices(), scaled.wedge_vertices(), "{size:e}");
+        }
     }
 
     #[test]

@@ -86,7 +86,7 @@ impl Ranking {
         let held = || rows.iter().enumerate().filter_map(|(i, (_, row))| Some((i, row.as_ref().ok()?)));
         for (i, costs) in held() {
             match costs.time(workload) {
-                Ok(time) => ranked.push((i, time, costs.bytes)),
+                Ok(time) => ranked.push((i, time, costs.bytes_in_all)),
                 Err(missing) => unranked.push((i, missing)),
             }
         }

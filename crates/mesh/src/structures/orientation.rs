@@ -5,6 +5,11 @@ use shapeloom_core::{Exec, OverBudget, Stop};
 use super::face_list::FaceList;
 use super::sides::by_edge;
 
+/// How many steps may pass between two looks at whether to stop.
+const POLL: usize = 1 << 16;
+/// Of an orientation of a face that was not met.
+const UNSEEN: u64 = u64::MAX;
+
 /// An edge of two faces: the faces, and whether one of them must be turned over for them to agree.
 #[derive(Clone, Copy)]
 struct Link {
@@ -37,7 +42,8 @@ impl Orientation {
         E: Send + From<Stop> + From<OverBudget>,
     {
         let count = faces.face_total();
-        let _memory = exec.reserve_elements(faces.all_corners().len() as u64 + count as u64, 16)?;
+        // A link takes 12 bytes and binds two corners; of a face the sets keep 8 bytes, the result 5, and a little in between.
+        let _memory = exec.reserve_elements(faces.all_corners().len() as u64 + 2 * count as u64, 12)?;
         let found = by_edge(faces, exec, |bucket| {
             let (mut links, mut odd, mut crowded) = (Vec::new(), Vec::new(), 0);
             bucket.for_each_edge(|edge| {
@@ -54,7 +60,10 @@ impl Orientation {
         })?;
         let mut sets = Sets::new(count);
         let mut torn = Vec::new();
-        for link in found.iter().flat_map(|(links, ..)| links) {
+        for (number, link) in found.iter().flat_map(|(links, ..)| links).enumerate() {
+            if number % POLL == 0 {
+                exec.check()?;
+            }
             let [a, b] = link.faces;
             if !sets.unite(a, b, link.differ) {
                 torn.push(a);
@@ -65,6 +74,9 @@ impl Orientation {
         let mut numbers = vec![u32::MAX; count];
         let mut first_against = Vec::new();
         for face in 0..count as u32 {
+            if face as usize % POLL == 0 {
+                exec.check()?;
+            }
             let (root, against) = sets.find(face);
             if numbers[root as usize] == u32::MAX {
                 numbers[root as usize] = first_against.len() as u32;
@@ -81,11 +93,14 @@ impl Orientation {
         torn.sort_unstable_by_key(|&face| result.components[face as usize]);
         torn.dedup_by_key(|face| result.components[*face as usize]);
         if !torn.is_empty() {
+            // The links once more, both ways, and two words for each orientation of a face.
+            let _more = exec.reserve_elements(faces.all_corners().len() as u64 + count as u64, 20)?;
             let links: Vec<Link> = found.into_iter().flat_map(|(links, ..)| links).collect();
             let neighbours = Neighbours::new(count, &links);
+            let mut before = vec![UNSEEN; 2 * count];
             for face in torn {
-                exec.check()?;
-                result.one_sided.push((result.components[face as usize], neighbours.ring(face)));
+                let ring = neighbours.ring(face, &mut before, exec)?;
+                result.one_sided.push((result.components[face as usize], ring));
             }
         }
         Ok(result)
@@ -160,34 +175,41 @@ impl Neighbours {
     }
 
     /// A ring of faces that turns over, without a face twice: from a face of a component that has no orientation. Breadth
-    /// first over faces with an orientation each, from the face to the face turned over.
-    fn ring(&self, face: u32) -> Vec<u32> {
-        let start = (face, false);
-        let mut before = std::collections::HashMap::from([(start, start)]);
+    /// first over faces with an orientation each, from the face to the face turned over. `before` is for each of these states
+    /// the one from which it was met, `2 * face`, and one more if turned over; components share it, as they share no face.
+    fn ring(&self, face: u32, before: &mut [u64], exec: &Exec) -> Result<Vec<u32>, Stop> {
+        let start = 2 * u64::from(face);
+        before[start as usize] = start;
         let mut queue = std::collections::VecDeque::from([start]);
+        let mut steps = 0usize;
         while let Some(at) = queue.pop_front() {
-            let part = self.starts[at.0 as usize] as usize..self.starts[at.0 as usize + 1] as usize;
-            for &(next, differ) in &self.across[part] {
-                let next = (next, at.1 != differ);
-                if before.contains_key(&next) {
+            if steps.is_multiple_of(POLL) {
+                exec.check()?;
+            }
+            steps += 1;
+            let own = at as usize / 2;
+            for &(next, differ) in &self.across[self.starts[own] as usize..self.starts[own + 1] as usize] {
+                let next = 2 * u64::from(next) + ((at & 1) ^ u64::from(differ));
+                if before[next as usize] != UNSEEN {
                     continue;
                 }
-                before.insert(next, at);
-                if next == (face, true) {
-                    let mut way = Vec::new();
-                    let mut step = at;
-                    while step != start {
-                        way.push(step.0);
-                        step = before[&step];
-                    }
-                    way.push(face);
-                    way.reverse();
-                    return innermost(&way);
+                before[next as usize] = at;
+                if next != start + 1 {
+                    queue.push_back(next);
+                    continue;
                 }
-                queue.push_back(next);
+                let mut way = vec![];
+                let mut step = at;
+                while step != start {
+                    way.push((step / 2) as u32);
+                    step = before[step as usize];
+                }
+                way.push(face);
+                way.reverse();
+                return Ok(innermost(&way));
             }
         }
-        vec![face]
+        Ok(vec![face])
     }
 }
 
