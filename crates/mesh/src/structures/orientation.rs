@@ -74,7 +74,7 @@ impl Orientation {
         let mut numbers = vec![u32::MAX; count];
         let mut first_against = Vec::new();
         for face in 0..count as u32 {
-            if face as usize % POLL == 0 {
+            if (face as usize).is_multiple_of(POLL) {
                 exec.check()?;
             }
             let (root, against) = sets.find(face);
