@@ -14,6 +14,7 @@
 //! - [`primitives`]: ready shapes with closed-form facts.
 
 pub mod primitives;
+mod stray_samples;
 pub mod structures;
 
 mod attributes;
