@@ -236,6 +236,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "Faces were turned by more than a right angle when vertices moved: the mesh is folded there. Ask for less, or start from a mesh that is nearer to what is wanted.",
     ),
     (
+        "W-height-no-cell",
+        "No cell of a height field has heights at all four corners: each touches a hole, and cells that do are left out. So no triangle is left. Fill the holes before, or check which number the file means as a hole.",
+    ),
+    (
+        "W-height-stray",
+        "Some samples of a height field have a height, but each cell around them touches a hole and is left out: no triangle has these samples, and the report gives no deviation, as nothing stands for them.",
+    ),
+    (
         "W-height-tolerance",
         "Some cells of a height field are twisted: their four heights lie so far from a plane that triangles come near the surface between them only when the cell is cut into many. They were cut as finely as max_cell_steps allows and are still farther than the tolerance; the report says how far. A tolerance of 0 can be reached by cells without twist alone. Allow more steps with --set max_cell_steps=N, or a larger tolerance.",
     ),

@@ -131,7 +131,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "E-heights-finite",
         "A height is infinite, or becomes so by the options height and exaggeration. With the option drop_non_finite such heights become holes.",
     ),
-    ("E-heights-grid", "The places of the samples are not finite numbers, or their distances are not above 0."),
+    (
+        "E-heights-grid",
+        "The places of the samples are not finite numbers, their distances are not above 0, or the places are so large that neighbouring samples fall together: move the grid nearer to the origin.",
+    ),
     (
         "E-heights-limit",
         "The header claims more samples than the reader's limits allow for a file of this length. Nothing was allocated for them.",

@@ -16,6 +16,7 @@
 #[cfg(test)]
 mod poll_count;
 pub mod primitives;
+mod stray_samples;
 pub mod structures;
 
 mod attributes;

@@ -64,6 +64,12 @@ impl NorthFirst {
         if !(self.south_west + far).is_finite() || !self.south_west.is_finite() {
             return Err(grid_fault("samples at places that are no numbers".into()).into());
         }
+        // The gaps between numbers are widest at the largest ones.
+        let largest = self.south_west.abs().max((self.south_west + far).abs());
+        if self.spacing.cmplt(largest * f64::EPSILON).any() {
+            let found = "places so large that neighbouring samples would be at the same one";
+            return Err(grid_fault(found.into()).into());
+        }
         Ok(field.placed(placement))
     }
 }
@@ -131,6 +137,17 @@ mod tests {
         let field = grid.into_field(&ReadContext::default(), &mut Findings::default()).unwrap();
         assert_eq!(field.heights(), [4.0, 5.0, 2.0, 3.0, 0.0, 1.0]);
         assert_eq!(field.sample(1, 2), Some(DVec3::new(110.0, 17.0, 1.0)));
+    }
+
+    #[test]
+    fn places_that_fall_together_are_refused() {
+        for (south_west, sound) in
+            [(DVec2::new(1e20, 0.0), false), (DVec2::new(0.0, -1e17), false), (DVec2::splat(1e15), true)]
+        {
+            let grid = NorthFirst { columns: 2, rows: 2, spacing: DVec2::ONE, south_west, heights: vec![0.0; 4] };
+            let field = grid.into_field(&ReadContext::default(), &mut Findings::default());
+            assert_eq!(field.is_ok(), sound, "{south_west}");
+        }
     }
 
     #[test]

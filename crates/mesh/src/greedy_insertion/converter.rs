@@ -12,6 +12,7 @@ use super::difference::{Farthest, Heights};
 use super::lattice_delaunay::{LatticeDelaunay, NONE};
 use super::outline::WholeCells;
 use super::twisted_cell::CellCut;
+use crate::stray_samples::tell_strays;
 use crate::{Column, Domain, HeightField, MeshError, TEXCOORD, TriMesh};
 
 options! {
@@ -90,6 +91,7 @@ impl Convert<HeightField> for GreedyInsertion {
         report.figure("regular_triangles", 2.0 * refinement.cells.count() as f64);
         report.figure("height_error", height_error);
         report.figure("cells_cut_finer", made.cut_finer as f64);
+        tell_strays(source, &mut report, exec)?;
         exec.progress(1.0);
         Ok(Converted::new(made.mesh, report))
     }
