@@ -143,11 +143,10 @@ fn random_fields_are_covered_within_the_tolerance() {
         let made = GreedyInsertion::new(tolerance).convert(&field).unwrap();
         let context = format!("round {round}, {} x {}, {tolerance}", field.columns(), field.rows());
         check_plan(&field, &made.value);
+        let nothing = made.value.triangles().is_empty();
         let strays = made.report.find("stray_samples").unwrap() > 0.0;
-        assert_eq!(made.report.deviation == Deviation::Unknown, strays, "{context}");
-        let stretch = field.placement().vector(DVec3::Z).length();
-        let largest = made.report.find("height_error").unwrap() * stretch;
-        let bound = made.report.deviation.value().unwrap_or(largest * (1.0 + 1e-14) + 1e-13);
+        assert_eq!(made.report.deviation == Deviation::Unknown, nothing && strays, "{context}");
+        let bound = made.report.deviation.value().unwrap_or(0.0);
         assert!(bound <= tolerance, "{context}: {bound}");
         assert!(made.report.findings.iter().all(|finding| finding.code != "W-height-tolerance"), "{context}");
         let found = sampled(&field, &made.value, 24);
