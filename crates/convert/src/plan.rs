@@ -159,7 +159,7 @@ mod tests {
     fn methods_and_vias_are_on_the_way() {
         let wish = Wish { method: Some("weld".into()), ..Wish::to([Kind::TriMesh]) };
         assert_eq!(names(&plan(Kind::BezierSurface, &wish).unwrap()), ["tessellate-patches", "weld"]);
-        assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["triangulate-polygons", "weld"]);
+        assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["weld", "triangulate-polygons"]);
         let wish = Wish { via: Some(Kind::TriMesh), ..Wish::to([Kind::PolyMesh, Kind::TriMesh]) };
         assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["triangulate-polygons"]);
         assert!(plan(Kind::TriMesh, &Wish::to([Kind::TriMesh])).unwrap().steps.is_empty());
