@@ -39,7 +39,7 @@ impl Plan {
 }
 
 /// The shortest way from a kind that does what is wished; between ways of equal length the one whose converters stand
-/// first in the registry. Converters that are [`only_by_name`](Converter::only_by_name) are on it only where they are named.
+/// first in the registry. Converters that are [`only_by_name`](field@Converter::only_by_name) are on it only where they are named.
 ///
 /// # Errors
 /// There is no such way, or no converter of that name.
