@@ -11,7 +11,7 @@ use shapeloom::judge::Topology;
 use shapeloom::mesh::primitives::Torus;
 use shapeloom::mesh::{PolyMesh, TriMesh, TriangulatePolygons};
 use shapeloom::render::{Picture, Scene, SceneMesh};
-use shapeloom_examples::Output;
+use shapeloom_examples::{Output, rod};
 
 const ORANGE: [f32; 3] = [0.9, 0.22, 0.02];
 
@@ -51,8 +51,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             let positions = (0..mesh.positions().len() as u32).map(at).collect();
             scene.surfaces.push(SceneMesh { color, ..SceneMesh::new(positions, triangles) });
         }
-        scene.surfaces.extend(report.boundary.edges().iter().map(|&[a, b]| rod(at(a), at(b), 0.035)));
-        scene.surfaces.extend(report.non_manifold_vertices.iter().map(|&v| rod(at(v), at(v) + DVec3::Z * 1e-3, 0.14)));
+        scene.surfaces.extend(report.boundary.edges().iter().map(|&[a, b]| rod(at(a), at(b), 0.035, ORANGE)));
+        scene
+            .surfaces
+            .extend(report.non_manifold_vertices.iter().map(|&v| rod(at(v), at(v) + DVec3::Z * 1e-3, 0.14, ORANGE)));
     }
     println!("{}", output.draw("topology_report", &scene, [8.0, 38.0], Picture::new())?.display());
     Ok(())
@@ -69,15 +71,4 @@ fn grid(m: u32, n: u32, at: impl Fn(f64, f64) -> DVec3) -> Result<TriMesh, Box<d
     let positions = (0..m * rows).map(|k| at(f64::from(k / rows) / f64::from(m), f64::from(k % rows) / f64::from(n)));
     let cells = (0..m).flat_map(|i| (0..n).map(move |j| [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)]));
     Ok(TriMesh::try_new(positions.collect(), cells.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect())?)
-}
-
-/// A thin orange octahedron around a segment.
-fn rod(a: DVec3, b: DVec3, radius: f64) -> SceneMesh {
-    let along = (b - a).normalize();
-    let (u, v) = along.any_orthonormal_pair();
-    let (middle, ends) = ((a + b) / 2.0, (b - a) / 2.0 + along * radius);
-    let corners = [u, v, -u, -v].map(|side| middle + side * radius);
-    let positions = [&corners[..], &[middle + ends, middle - ends]].concat();
-    let triangles = (0..4).flat_map(|k| [[k, (k + 1) % 4, 4], [(k + 1) % 4, k, 5]]).collect();
-    SceneMesh { color: ORANGE, ..SceneMesh::new(positions, triangles) }
 }

@@ -2,9 +2,11 @@
 //! folder.
 
 mod measure;
+mod rod;
 mod slice;
 
 pub use measure::{measure_patch, triangles_of_patch};
+pub use rod::rod;
 pub use slice::Slice;
 
 use std::error::Error;

@@ -16,15 +16,27 @@ fn every_task_prints_lines_of_json() {
     for &task in Task::all() {
         let name = task.name();
         let (mut out, mut err) = (Vec::new(), Vec::new());
-        let words =
-            ["shapeloom-bench", &name, "--runs", "1", "--threads", "2", "--tolerance", "0.05", "--data", &inputs];
+        let words = [
+            "shapeloom-bench",
+            &name,
+            "--runs",
+            "1",
+            "--threads",
+            "2",
+            "--tolerance",
+            "0.05",
+            "--size",
+            "33",
+            "--data",
+            &inputs,
+        ];
         let code = shapeloom_bench::run(words.map(Into::into), &mut out, &mut err);
         assert_eq!(code, 0, "{}", String::from_utf8_lossy(&err));
         let lines = String::from_utf8(out).expect("UTF-8");
         let expected = match task {
-            Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Delaunay2d => 1,
+            Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge | Task::Delaunay2d => 1,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
-            Task::Closest => 2,
+            Task::Closest | Task::Onering | Task::Heightfield => 2,
             Task::Read | Task::Write | Task::Rays => 5,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");

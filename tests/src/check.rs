@@ -69,7 +69,7 @@ fn what_has_no_surface_is_refused_and_patches_are_judged_as_triangles() {
     let patch = write(&folder, "patch.bpt", "1\n1 1\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n");
     let outcome = run(&["check", &patch]);
     let words = String::from_utf8_lossy(&outcome.out).into_owned();
-    assert!(outcome.code == 1 && words.contains("judged as triangles") && words.contains("W-check-open"), "{words}");
+    assert!(outcome.code == 1 && words.contains("taken as triangles") && words.contains("W-check-open"), "{words}");
     let wrong = run(&["check", &points, "--profile", "art"]);
     assert!(wrong.code == 2 && wrong.err.contains("simulation"), "{}", wrong.err);
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use shapeloom::core::{Diagnostic, Exec, Place};
 use shapeloom::io::{
-    ReadContext, ReadError, ReadShape, SiblingError, SiblingName, Siblings, WriteContext, WriteOptions, detect,
-    format_by_id, read, write,
+    ReadContext, ReadError, ReadOptions, ReadShape, SiblingError, SiblingName, Siblings, WriteContext, WriteOptions,
+    detect, format_by_id, read, write,
 };
 use shapeloom::mesh::{PolyMesh, TriMesh};
 use shapeloom::shape::{Geometry, Shape};
@@ -26,11 +26,16 @@ impl Siblings for Folder {
 
 /// Reads a file as the program does, under a budget of 64 MB and 40 times its size.
 pub fn read_file(path: &Path) -> Result<ReadShape, ReadError> {
+    read_file_with(path, ReadOptions::new())
+}
+
+/// The same with options.
+pub fn read_file_with(path: &Path, options: ReadOptions) -> Result<ReadShape, ReadError> {
     let bytes = fs::read(path).expect("a file of the collection");
     let name = path.display().to_string();
     let exec = Exec::default().with_memory((64 << 20) + 40 * bytes.len() as u64);
     let siblings: Option<Arc<dyn Siblings>> = Some(Arc::new(Folder(path.parent().expect("a folder").to_owned())));
-    let context = ReadContext { exec, siblings, ..ReadContext::named(name.as_str()) };
+    let context = ReadContext { exec, siblings, options, ..ReadContext::named(name.as_str()) };
     let format = detect(&bytes, Some(&name)).unwrap_or_else(|error| panic!("{error}"));
     read(&bytes, format, &context)
 }
@@ -61,9 +66,14 @@ pub fn expected(format: &str) -> Vec<Case> {
 impl Case {
     /// Reads the file and compares. `codes` says what the project calls a kind of defect.
     pub fn check(&self, codes: impl Fn(&str) -> &'static [&'static str]) {
+        self.check_with(ReadOptions::new(), codes);
+    }
+
+    /// The same with options.
+    pub fn check_with(&self, options: ReadOptions, codes: impl Fn(&str) -> &'static [&'static str]) {
         let name = self.path.file_name().expect("a name").to_string_lossy().into_owned();
         let wanted: Vec<&str> = self.kinds.iter().flat_map(|kind| codes(kind)).copied().collect();
-        let result = read_file(&self.path);
+        let result = read_file_with(&self.path, options);
         match (self.outcome.as_str(), result) {
             ("accept", Ok(read)) => {
                 let warnings: Vec<_> = read.findings.iter().collect();

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use shapeloom::convert::{Converter, Effect, Request, registry};
 use shapeloom::core::glam::DVec3;
 use shapeloom::core::{Category, Deviation, Exec, OptionKind, Stop, Threads};
-use shapeloom::mesh::{Column, Domain, MeshAttributes, TriMesh};
+use shapeloom::mesh::{Column, Domain, MeshAttributes};
 use shapeloom::shape::Geometry;
 
 use crate::oracles::{self, Pieces};
@@ -108,17 +108,34 @@ fn tagged_places(source: &Geometry, domain: Domain, tag: usize) -> Vec<DVec3> {
     }
 }
 
-/// Checks that every tag in a column of the result lies where the tagged element of the source lies.
-fn check_tags(source: &Geometry, result: &TriMesh, before: Domain, after: Domain, column: &Column) -> bool {
-    let corners = result.triangles().as_flattened();
-    corners.iter().enumerate().all(|(wedge, &vertex)| {
+/// A result's positions, and of each corner its vertex and face.
+fn corners_of(result: &Geometry) -> (&[DVec3], Vec<(u32, usize)>) {
+    match result {
+        Geometry::TriMesh(mesh) => {
+            let corners = mesh.triangles().as_flattened().iter().enumerate().map(|(wedge, &v)| (v, wedge / 3));
+            (mesh.positions(), corners.collect())
+        }
+        Geometry::PolyMesh(mesh) => {
+            let corners = mesh.faces().enumerate().flat_map(|(face, corners)| corners.iter().map(move |&v| (v, face)));
+            (mesh.positions(), corners.collect())
+        }
+        other => panic!("a {} has no corners", other.kind()),
+    }
+}
+
+/// Checks that every tag in a column of the result lies where the tagged element of the source lies, up to how far a vertex
+/// may have moved.
+fn check_tags(source: &Geometry, result: (&Geometry, f64), before: Domain, after: Domain, column: &Column) -> bool {
+    let (result, moved) = result;
+    let (positions, corners) = corners_of(result);
+    corners.into_iter().enumerate().all(|(wedge, (vertex, face))| {
         let element = match after {
             Domain::Vertex => vertex as usize,
-            Domain::Face => wedge / 3,
+            Domain::Face => face,
             Domain::Wedge => wedge,
         };
         let tag = column.number(element, 0) as usize;
-        tagged_places(source, before, tag).contains(&result.positions()[vertex as usize])
+        tagged_places(source, before, tag).iter().any(|place| place.distance(positions[vertex as usize]) <= moved)
     })
 }
 
@@ -128,13 +145,15 @@ fn tagged_attributes_arrive_where_they_belong_or_are_listed_as_lost() {
     for (converter, name, source) in cases() {
         let Some(before) = attributes(&source) else { continue };
         let converted = converter.run(&source, &request(&source), &Exec::default()).expect("it ran before");
-        let Geometry::TriMesh(result) = &converted.value else { panic!("all results with attributes are triangles") };
+        let moved = if let Deviation::AtMost(bound) = converted.report.deviation { bound } else { 0.0 };
+        let result = (&converted.value, moved);
+        let of_result = attributes(result.0).expect("all results with attributes are meshes");
         for domain in [Domain::Vertex, Domain::Face, Domain::Wedge] {
             let Some(tags) = before.of(domain).get("tag") else { continue };
             // A vertex attribute may move to the corners; each kind of element has a tag of the same name, so the
             // values tell which one arrived.
             let arrived = [domain, Domain::Wedge].into_iter().find_map(|after| {
-                let column = result.attribute(after, "tag")?;
+                let column = of_result.of(after).get("tag")?;
                 check_tags(&source, result, domain, after, column).then_some((after, column))
             });
             let Some((after, column)) = arrived else {

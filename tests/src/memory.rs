@@ -1,8 +1,9 @@
 //! The memory of the process itself, on files made to take much of it.
 
+use std::fs;
 use std::process::Command;
 
-use crate::support::root;
+use crate::support::{data, root};
 
 /// Beside what the program takes for nothing: its own code, threads and buffers.
 const BASE: u64 = 64 << 20;
@@ -77,5 +78,53 @@ fn readers_take_memory_in_proportion_to_the_file() {
         let Some(found) = peak(&["info", &path]) else { return };
         let most = BASE + 40 * text.len() as u64;
         assert!(found <= most, "{name}: {} bytes took {found}, more than {most}", text.len());
+    }
+}
+
+/// The same of heights. Of compressed pictures the memory follows from their header, which has a limit of its own: eight
+/// bytes a sample.
+#[test]
+fn readers_of_heights_take_memory_in_proportion_to_their_samples() {
+    let grid = |count: usize| {
+        format!("ncols {count}\nnrows {count}\nxllcorner 0\nyllcorner 0\ncellsize 1\n{}", "0 ".repeat(count * count))
+    };
+    let mut sparse = fs::read(data("mount_st_helens.dem")).expect("data/mount_st_helens.dem is in the repository");
+    // Profiles of one sample each, as far apart as they may be.
+    let (header, profile) = (sparse[..1024].to_vec(), sparse[1024..2048].to_vec());
+    sparse = header;
+    sparse[858..864].copy_from_slice(b"  3000");
+    for number in 0..3000u32 {
+        let mut profile = profile.clone();
+        profile[12..18].copy_from_slice(b"   146");
+        profile[144..1020].copy_from_slice("     7".repeat(146).as_bytes());
+        profile[24..48].copy_from_slice(format!("{:24.3}", f64::from(number) * 30.0).as_bytes());
+        profile[48..72].copy_from_slice(format!("{:24.3}", f64::from(number / 2 * 30)).as_bytes());
+        sparse.extend(profile);
+    }
+    let mut black = Vec::new();
+    let mut encoder = png::Encoder::new(&mut black, 4096, 4096);
+    encoder.set_depth(png::BitDepth::One);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&vec![0; 4096 * 4096 / 8]).expect("a black picture");
+    writer.finish().expect("its end");
+    assert!(black.len() < 20_000);
+    let mut binary = b"P5 2000 2000 255\n".to_vec();
+    binary.resize(binary.len() + 4_000_000, 9);
+    let files: Vec<(&str, Vec<u8>, u64)> = vec![
+        ("grid.asc", grid(1500).into_bytes(), 0),
+        ("text.pgm", format!("P2 1500 1500 9\n{}", "0 ".repeat(1500 * 1500)).into_bytes(), 0),
+        ("binary.pgm", binary, 0),
+        ("sparse.dem", sparse, 0),
+        ("claim.pgm", b"P5 60000 60000 255\n".to_vec(), 0),
+        ("black.png", black, 4096 * 4096),
+    ];
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, bytes, samples) in files {
+        let path = folder.path().join(name);
+        fs::write(&path, &bytes).expect("a file");
+        let path = path.display().to_string();
+        let Some(found) = peak(&["info", &path]) else { return };
+        let most = BASE + 40 * bytes.len() as u64 + 8 * samples;
+        assert!(found <= most, "{name}: {} bytes took {found}, more than {most}", bytes.len());
     }
 }

@@ -3,17 +3,17 @@
 use std::collections::HashMap;
 
 use shapeloom::core::Options;
-use shapeloom::core::glam::DVec3;
-use shapeloom::io::{FORMATS, WriteContext, WriteOptions, write};
-use shapeloom::mesh::{COLOR, Column, Domain, GeometricGraph, NORMAL, PointCloud, TEXCOORD, Values};
-use shapeloom::shape::{Material, Part, Shape};
+use shapeloom::core::glam::{DVec2, DVec3};
+use shapeloom::io::{FORMATS, WriteContext, WriteOptions, format_by_id, write};
+use shapeloom::mesh::{COLOR, Column, Domain, GeometricGraph, HeightField, NORMAL, PointCloud, TEXCOORD, Values};
+use shapeloom::shape::{Material, Part, Shape, Units, UpAxis};
 
 use crate::entry::read_as;
 use crate::shapes;
-use crate::support::{Dice, root};
+use crate::support::{Dice, data, root};
 
 /// Inputs of each format by hand, beside those that the writers make.
-const BY_HAND: [(&str, &str); 12] = [
+const BY_HAND: [(&str, &str); 17] = [
     (
         "obj",
         "mtllib a.mtl\no a\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvt 0 0\nvn 0 0 1\ng b c\nusemtl m\ns 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -4//1 -3//1 \\\n-2//1\nl 1 2 3\np 1 2\n",
@@ -48,6 +48,11 @@ const BY_HAND: [(&str, &str); 12] = [
         "stl",
         "solid\nfacet normal nan 0 0\n outer loop\n vertex 1e39 0 0\n vertex 0 1 0\n vertex 0 0 1\n endloop\n endfacet\nendsolid\n",
     ),
+    ("pgm", "P2 # made\n3 2\n9\n0 1 2 3\n# half\n4 9\n"),
+    ("pgm", "P5\n4 3\n255\n0123456789ab"),
+    ("pgm", "P5 3 2 65000\n0a1b2c3d4e5f"),
+    ("asc", "ncols 3\nnrows 2\nxllcorner 5e5\nyllcenter -10.5\ndx 1\ndy 2.5\nnodata_value -1\n1 2 3\n4.5e1 -1 nan\n"),
+    ("asc", "NCOLS 2\r\nNROWS 2\r\nXLLCENTER 0\r\nYLLCENTER 0\r\nCELLSIZE .5\r\n1 2\r\n-9999 4\r\n"),
     ("off", "4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 1\n"),
     (
         "ply",
@@ -96,8 +101,69 @@ fn shapes() -> Vec<Shape> {
         Shape::new(Part::new(cube).named("cube")),
         Shape { materials, ..Shape::new(soup) },
         Shape { parts: vec![Part::new(graph), Part::new(PointCloud::new(vec![DVec3::ONE; 3]))], ..Shape::default() },
+        heights(),
         Shape::new(Part::new(shapeloom::parametric::BezierSurface::new(vec![shapes::bent_patch()]))),
     ]
+}
+
+/// A height field with a hole.
+fn heights() -> Shape {
+    let heights = (0..20).map(|i| if i == 7 { f64::NAN } else { f64::from(i * i % 13) - 4.5 }).collect();
+    let field = HeightField::try_new(5, 4, DVec2::new(2.0, 3.0), heights).expect("a field");
+    Shape { up: Some(UpAxis::Z), units: Some(Units::METERS), ..Shape::new(Part::new(field)) }
+}
+
+/// Binary and long inputs by hand: tiled and plain TIFF in both byte orders, the first profiles of a DEM, a PNG with its
+/// calibration damaged.
+fn more_by_hand() -> Vec<(&'static str, Vec<u8>)> {
+    let mut dem = std::fs::read(data("mount_st_helens.dem")).expect("data/mount_st_helens.dem is in the repository");
+    dem.truncate(4 * 1024);
+    dem[858..864].copy_from_slice(b"     2");
+    let floats: Vec<u8> = [0.5f32, -1.0, f32::NAN, 3e-40, 1e38, 7.0].iter().flat_map(|x| x.to_be_bytes()).collect();
+    let words: Vec<u8> = (0..6u16).flat_map(|word| (word * 9000).to_le_bytes()).collect();
+    let mut png = Vec::new();
+    write(&heights(), format_by_id("png").expect("a format"), &WriteContext::default(), &mut png).expect("a picture");
+    let calibration = png.windows(4).position(|kind| kind == b"pCAL").expect("a calibration");
+    png[calibration + 20] ^= 1;
+    vec![
+        ("dem", dem),
+        ("tiff", tiff(true, 32, 3, &floats)),
+        ("tiff", tiff(false, 16, 1, &words)),
+        ("tiff", tiff(false, 16, 2, &words)),
+        ("png", png),
+    ]
+}
+
+/// 3 × 2 samples in one strip, with the distance of samples.
+fn tiff(big: bool, depth: u32, format: u32, data: &[u8]) -> Vec<u8> {
+    let word = |value: u16| if big { value.to_be_bytes() } else { value.to_le_bytes() };
+    let long = |value: u32| if big { value.to_be_bytes() } else { value.to_le_bytes() };
+    let scale = 8 + 2 + 11 * 12 + 4;
+    let tags: [(u16, u16, u32, u32); 11] = [
+        (256, 4, 1, 3),
+        (257, 4, 1, 2),
+        (258, 4, 1, depth),
+        (259, 4, 1, 1),
+        (262, 4, 1, 1),
+        (273, 4, 1, scale + 24),
+        (277, 4, 1, 1),
+        (278, 4, 1, 2),
+        (279, 4, 1, data.len() as u32),
+        (339, 4, 1, format),
+        (33550, 12, 3, scale),
+    ];
+    let mut bytes = if big { b"MM\0*\0\0\0\x08".to_vec() } else { b"II*\0\x08\0\0\0".to_vec() };
+    bytes.extend(word(11));
+    for (tag, kind, count, value) in tags {
+        bytes.extend([word(tag), word(kind)].concat());
+        bytes.extend([long(count), long(value)].concat());
+    }
+    bytes.extend(long(0));
+    for size in [30.0f64, 20.0, 0.0] {
+        bytes.extend(if big { size.to_be_bytes() } else { size.to_le_bytes() });
+    }
+    bytes.extend(data);
+    bytes
 }
 
 /// Small sound inputs of every format that is read.
@@ -105,6 +171,9 @@ fn corpus() -> HashMap<&'static str, Vec<Vec<u8>>> {
     let mut corpus: HashMap<&'static str, Vec<Vec<u8>>> = HashMap::new();
     for (id, text) in BY_HAND {
         corpus.entry(id).or_default().push(text.as_bytes().to_vec());
+    }
+    for (id, bytes) in more_by_hand() {
+        corpus.entry(id).or_default().push(bytes);
     }
     for format in FORMATS.iter().filter(|format| format.writes.is_some() && format.reads.is_some()) {
         for shape in shapes() {

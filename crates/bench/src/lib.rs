@@ -6,7 +6,9 @@
 mod closest;
 mod delaunay2d;
 mod files;
+mod half_edges;
 mod hausdorff;
+mod heightfield;
 mod measure;
 mod queries;
 mod rays;
@@ -43,6 +45,9 @@ struct Arguments {
     /// The tolerance of conversions, relative to the diagonal of the input's bounding box
     #[arg(long, default_value_t = 1e-4)]
     tolerance: f64,
+    /// How many samples a side has a terrain made by formula
+    #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(2..=16_384))]
+    size: u32,
     /// A file with the JSON lines of peers: print a table of their figures beside these instead
     #[arg(long, value_name = "FILE", conflicts_with = "json")]
     against: Option<PathBuf>,
@@ -75,6 +80,12 @@ pub enum Task {
     Rays,
     /// Closest points of blob_1m.ply to qry_surface.f32 and every tenth of qry_box.f32 (else to points of a formula).
     Closest,
+    /// Half-edges of blob_1m.ply, from its triangles.
+    Halfedge,
+    /// Sweeps over the one-rings of the same mesh: a sum over neighbours, and the vertices' normals.
+    Onering,
+    /// A terrain made by formula to triangles: regular, and adaptive.
+    Heightfield,
     /// The Delaunay triangulation of the points of pts2d.f64 (else of a formula).
     Delaunay2d,
 }
@@ -119,7 +130,18 @@ impl Task {
                     _ => names(&format!("j.closest_{points}"), &[".signed_tall", ".signed"]),
                 }
             }
-            Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff => Vec::new(),
+            Self::Halfedge => {
+                vec![
+                    "p.openmesh.build_from_indices".into(),
+                    "p.adjacency_1m.halfedge_build_from_numpy".into(),
+                    "p.adjacency_1m.halfedge_build".into(),
+                ]
+            }
+            Self::Onering => match last([':', ' ']) {
+                "sum" => vec!["p.openmesh.one_ring_sum".into()],
+                _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
+            },
+            Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
         }
     }
 }
@@ -136,6 +158,7 @@ pub(crate) struct Setting {
     pub(crate) data: PathBuf,
     pub(crate) runs: u32,
     pub(crate) tolerance: f64,
+    pub(crate) size: u32,
 }
 
 /// Runs a command line, the program's name first, and returns its exit code: 0, or 2 for anything that went wrong.
@@ -150,8 +173,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
             return if written.is_ok() { code } else { 2 };
         }
     };
-    let Arguments { task, data, runs, threads, tolerance, against, json: _ } = arguments;
-    let setting = Setting { data, runs, tolerance };
+    let Arguments { task, data, runs, threads, tolerance, size, against, json: _ } = arguments;
+    let setting = Setting { data, runs, tolerance, size };
     let work = || match task {
         Task::Tessellate => tessellate::run(&setting).map(|outcome| vec![outcome]),
         Task::Read => files::read_files(&setting),
@@ -163,6 +186,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Hausdorff => hausdorff::run(&setting),
         Task::Rays => rays::run(&setting),
         Task::Closest => closest::run(&setting),
+        Task::Halfedge => half_edges::build(&setting).map(|outcome| vec![outcome]),
+        Task::Onering => half_edges::sweep(&setting),
+        Task::Heightfield => heightfield::run(&setting),
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.

@@ -70,6 +70,8 @@ pub(crate) enum Command {
     Render(RenderArguments),
     /// Make a ready shape
     Make(MakeArguments),
+    /// Compare the data structures that can hold a mesh: their size, what they can answer, and how fast
+    Structures(StructuresArguments),
     /// List the file formats
     Formats,
     /// List the converters and the kinds that they join
@@ -177,6 +179,27 @@ pub(crate) struct CheckArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct StructuresArguments {
+    /// The file to read, or - for standard input
+    pub(crate) input: PathBuf,
+    /// What the structures are ranked for: how often each of VV, VE, VF, EV, EE, EF, FV, FE, FF is asked, queries=N for all nine
+    /// alike, updates=N for changes of the mesh, size=W to count a structure of twice the size, coordinates
+    /// included, as 2^W times as slow
+    #[arg(long, value_name = "KEY=N,...", default_value = "queries=1e6")]
+    pub(crate) mix: String,
+    /// Cut polygons into triangles first, so that structures of triangles can hold them
+    #[arg(long)]
+    pub(crate) triangles: bool,
+    /// Merge vertices at exactly the same position first, as files without shared vertices need it
+    #[arg(long)]
+    pub(crate) weld: bool,
+    #[command(flatten)]
+    pub(crate) way: WayArguments,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct RenderArguments {
     /// The file to read, or - for standard input
     pub(crate) input: PathBuf,
@@ -254,7 +277,8 @@ pub(crate) struct CompareArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct MakeArguments {
-    /// Which shape: tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, torus, cylinder, cone or grid
+    /// Which shape: tetrahedron, cube, octahedron, dodecahedron, icosahedron, sphere, torus, cylinder, cone, grid,
+    /// ellipsoid or quadric
     pub(crate) shape: String,
     #[command(flatten)]
     pub(crate) target: TargetArguments,

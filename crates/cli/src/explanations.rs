@@ -31,6 +31,33 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "E-distance-sample",
         "A sample of a shape has a position that is not finite, or a weight, a radius or a distance to the other shape that is negative or not finite. The message names the sample by its number.",
     ),
+    (
+        "E-edit-border",
+        "The operator would close a border or make it touch itself, or it needs faces on both sides of an edge that lies on the border. Choose another edge, or fill the hole first.",
+    ),
+    (
+        "E-edit-corners",
+        "The operator needs triangles beside the edge, or two corners of one face that are not neighbours. Triangulate the faces first.",
+    ),
+    (
+        "E-edit-duplicate",
+        "The operator would make a second edge between the same vertices, or a second face with the same corners.",
+    ),
+    ("E-edit-fold", "A face would turn over, or lose its area. Choose another place, or allow larger turns."),
+    (
+        "E-edit-full",
+        "The mesh has as many elements as numbers of 32 bits can tell apart. Compact it, which frees the numbers of deleted elements.",
+    ),
+    (
+        "E-edit-gone",
+        "An operator on a mesh was given an element that is not there, or was deleted. Numbers of deleted elements are not used again; find the element anew.",
+    ),
+    (
+        "E-edit-link",
+        "Collapsing, joining or removing here would glue parts of the surface together that only an edge or vertex should join (link condition). Choose another edge, or split an edge near it first.",
+    ),
+    ("E-edit-manifold", "Lists of triangles can be edited only where at most two triangles meet in an edge."),
+    ("E-edit-valence", "The vertex has too few edges to be removed: no face would be left."),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
@@ -93,6 +120,39 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-shape-kind", "A shape is of another kind than an operation takes; convert it first."),
     ("E-shape-unit", "A unit of length is not a positive number of metres."),
     ("E-strict-tolerance", "With --strict, a result was refused that is not proven to be within the tolerance."),
+    (
+        "E-structure-corner",
+        "A face names the same vertex twice, which half-edges, winged edges and corner tables cannot hold: a walk around the face would pass the vertex twice. Remove the face or split it at the vertex; indexed faces and face-vertex lists hold it as it is.",
+    ),
+    (
+        "E-structure-edge",
+        "An edge has more than two faces, which structures for manifolds cannot hold: an edge has one face on each side there. The message names the first such edge, its faces and how many more there are. Split the surface along the edge, or use a structure that holds any faces: indexed faces, face-vertex lists, incidence matrices.",
+    ),
+    ("E-structure-faces", "The source has edges alone; which faces they bound cannot be told from them."),
+    (
+        "E-structure-inconsistent",
+        "Parts of a structure contradict each other: an element names another that does not name it back, or that does not exist.",
+    ),
+    (
+        "E-structure-one-sided",
+        "A part of the surface has one side only, like a Möbius strip: going along the ring of faces that the message names, from each to the next across their common edge, comes back to the first face turned over. No choice of directions makes neighbours agree. Cut the surface along an edge of the ring, remove a face of it, or leave such parts as they are with leave_one_sided=true.",
+    ),
+    (
+        "E-structure-orientation",
+        "Two faces pass their common edge in the same direction, so that one of them looks outward and the other inward. Orient the mesh first (convert with --method orient-faces).",
+    ),
+    (
+        "E-structure-query",
+        "This structure does not hold the elements that the query is about: an adjacency matrix has no faces, a soup no shared vertices. Ask another structure; the table of the command structures shows which can answer what.",
+    ),
+    (
+        "E-structure-vertex",
+        "At a vertex the faces form more than one fan, as where two cones meet in their apex: turning about the vertex from face to face does not pass all of them. Double the vertex, or use a structure that holds any faces.",
+    ),
+    (
+        "E-structures-mix",
+        "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative. Example: --mix VV=1e6,VF=2e5,updates=100.",
+    ),
     (
         "E-tessellation-rounding",
         "The tolerance is smaller than the rounding of coordinates at this size; no mesh meets it.",
@@ -164,8 +224,28 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-check-volume", "A closed surface encloses a volume of 0 or less, so there is nothing to print."),
     (
+        "W-compact-collapsed",
+        "Triangles lost their area when positions were rounded to the steps of a compact store: two of their corners are the same step. The report says how far vertices moved. Take more bits, or weld and simplify first.",
+    ),
+    (
         "W-compare-size",
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
+    ),
+    (
+        "W-face-turned",
+        "Faces were turned by more than a right angle when vertices moved: the mesh is folded there. Ask for less, or start from a mesh that is nearer to what is wanted.",
+    ),
+    (
+        "W-height-no-cell",
+        "No cell of a height field has heights at all four corners: each touches a hole, and cells that do are left out. So no triangle is left. Fill the holes before, or check which number the file means as a hole.",
+    ),
+    (
+        "W-height-stray",
+        "Some samples of a height field have a height, but each cell around them touches a hole and is left out: no triangle has these samples, and the report gives no deviation, as nothing stands for them.",
+    ),
+    (
+        "W-height-tolerance",
+        "Some cells of a height field are twisted: their four heights lie so far from a plane that triangles come near the surface between them only when the cell is cut into many. They were cut as finely as max_cell_steps allows and are still farther than the tolerance; the report says how far. A tolerance of 0 can be reached by cells without twist alone. Allow more steps with --set max_cell_steps=N, or a larger tolerance.",
     ),
     (
         "W-info-open",
@@ -184,12 +264,24 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
     ),
     (
+        "W-orient-one-sided",
+        "A part of the surface has one side only and was left as it is. The ring of faces at the place named comes back to its first face turned over.",
+    ),
+    (
         "W-patch-degenerate",
         "A patch without area somewhere gave triangles without area; they are kept so that nothing opens.",
     ),
     (
         "W-patch-vanished",
         "A patch, or a part of it, is only a point or a line and left no triangle: the error is unknown there.",
+    ),
+    (
+        "W-planarity-missed",
+        "Some quadrilaterals are farther from flat than was asked for. Not every mesh has flat quadrilaterals near it: a grid along the straight lines of a saddle has none, and a border that is held may leave no room. The report says how far they are. Allow more steps, let the border go, or make a grid along the lines of curvature.",
+    ),
+    (
+        "W-planarize-polygons",
+        "Polygons of more than four corners are not made flat: only quadrilaterals are. Cut them into quadrilaterals or triangles first.",
     ),
     (
         "W-plane-collinear",

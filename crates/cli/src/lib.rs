@@ -25,6 +25,9 @@ mod session;
 mod settings;
 mod soundness;
 mod streams;
+mod structure_costs;
+mod subjects;
+mod workload;
 
 pub use explanations::explanation;
 pub use streams::Streams;
@@ -68,6 +71,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, streams: &mut Streams,
             Command::Compare(arguments) => commands::compare::run(arguments, session),
             Command::Render(arguments) => commands::render::run(arguments, session),
             Command::Make(arguments) => commands::make::run(arguments, session),
+            Command::Structures(arguments) => commands::structures::run(arguments, session),
             Command::Formats => commands::formats::run(session),
             Command::Graph(arguments) => commands::graph::run(arguments, session),
             Command::Explain(arguments) => commands::explain::run(arguments, session),

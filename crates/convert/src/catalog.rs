@@ -2,8 +2,9 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_mesh::{
-    ConstrainedDelaunay, DelaunayTriangulation, GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh,
-    TriangulateHeightField, TriangulatePolygons, TriangulateRegion, VertexNormals, Weld,
+    Compact, ConstrainedDelaunay, DelaunayTriangulation, GeometricGraph, GreedyInsertion, HeightField, OrientFaces,
+    PlanarizeQuads, PointCloud, PolyMesh, Polyline, TriMesh, TriangulateHeightField, TriangulatePolygons,
+    TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 
@@ -15,11 +16,17 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
+        entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
         entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),
         entry::<TriangulateRegion, Polyline>(Effect::Reported).only_by_name(),
         entry::<Weld, TriMesh>(Effect::Reported),
+        entry::<Weld, PolyMesh>(Effect::Reported),
+        entry::<OrientFaces, TriMesh>(Effect::Exact),
+        entry::<OrientFaces, PolyMesh>(Effect::Exact),
+        entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
     ]
 }

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use shapeloom_shape::Kind;
 
-use crate::{Converter, Effect, PlanError, converter, registry};
+use crate::{Converter, Effect, PlanError, registry};
 
 /// What a way must do.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +39,7 @@ impl Plan {
 }
 
 /// The shortest way from a kind that does what is wished; between ways of equal length the one whose converters stand
-/// first in the registry. Converters that are [`only_by_name`](Converter::only_by_name) are on it only where they are named.
+/// first in the registry. Converters that are [`only_by_name`](field@Converter::only_by_name) are on it only where they are named.
 ///
 /// # Errors
 /// There is no such way, or no converter of that name.
@@ -47,18 +47,14 @@ pub fn plan(from: Kind, wish: &Wish) -> Result<Plan, PlanError> {
     let mut steps = Vec::new();
     let mut at = from;
     if let Some(name) = &wish.method {
-        let method = converter(name).ok_or_else(|| PlanError::UnknownMethod {
-            found: name.clone(),
-            known: registry().iter().map(|converter| converter.name).collect(),
-        })?;
-        let off = || PlanError::MethodOffTheWay {
+        let (before, method) = reach(at, name)?.map_err(|method| PlanError::MethodOffTheWay {
             method: method.name,
             takes: method.from,
             gives: method.to,
             from,
             to: wish.targets.clone(),
-        };
-        steps.extend(shortest(at, &[method.from]).ok_or_else(off)?);
+        })?;
+        steps.extend(before);
         steps.push(method);
         at = method.to;
     }
@@ -75,6 +71,26 @@ pub fn plan(from: Kind, wish: &Wish) -> Result<Plan, PlanError> {
     }
     steps.extend(shortest(at, &wish.targets).ok_or_else(|| no_way(at, &wish.targets))?);
     Ok(Plan { steps })
+}
+
+/// The converter of that name that is nearest to a kind, and the steps that lead to it; the first of that name if none can
+/// be reached. One name may serve several kinds.
+fn reach(
+    from: Kind,
+    name: &str,
+) -> Result<Result<(Vec<&'static Converter>, &'static Converter), &'static Converter>, PlanError> {
+    let named: Vec<&'static Converter> = registry().iter().filter(|converter| converter.name == name).collect();
+    let Some(&first) = named.first() else {
+        let mut known = Vec::new();
+        for converter in registry() {
+            if !known.contains(&converter.name) {
+                known.push(converter.name);
+            }
+        }
+        return Err(PlanError::UnknownMethod { found: name.to_owned(), known });
+    };
+    let ways = named.into_iter().filter_map(|method| Some((shortest(from, &[method.from])?, method)));
+    Ok(ways.min_by_key(|(steps, _)| steps.len()).ok_or(first))
 }
 
 /// Breadth first over kinds; a target earlier in the list wins only between ways of equal length.
@@ -143,7 +159,7 @@ mod tests {
     fn methods_and_vias_are_on_the_way() {
         let wish = Wish { method: Some("weld".into()), ..Wish::to([Kind::TriMesh]) };
         assert_eq!(names(&plan(Kind::BezierSurface, &wish).unwrap()), ["tessellate-patches", "weld"]);
-        assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["triangulate-polygons", "weld"]);
+        assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["weld", "triangulate-polygons"]);
         let wish = Wish { via: Some(Kind::TriMesh), ..Wish::to([Kind::PolyMesh, Kind::TriMesh]) };
         assert_eq!(names(&plan(Kind::PolyMesh, &wish).unwrap()), ["triangulate-polygons"]);
         assert!(plan(Kind::TriMesh, &Wish::to([Kind::TriMesh])).unwrap().steps.is_empty());

@@ -10,6 +10,9 @@ pub struct Limits {
     pub max_bytes: u64,
     /// The largest number of elements of one kind (vertices, faces, control points, nodes).
     pub max_elements: u64,
+    /// The largest number of samples of a compressed image, whatever the length of its file. An image may always have as
+    /// many as its file has bytes.
+    pub max_samples: u64,
     /// The largest polynomial degree of a curve or surface, in each direction.
     pub max_degree: u32,
     /// The largest number of corners of one polygon.
@@ -26,6 +29,8 @@ impl Default for Limits {
             max_bytes: 1 << 40,
             // Element ids are u32 and u32::MAX is kept free as "none".
             max_elements: u32::MAX as u64 - 1,
+            // 8192 × 8192: half a gigabyte of heights from what may be a few kilobytes.
+            max_samples: 1 << 26,
             // De Casteljau is quadratic in the degree: 255 keeps one evaluation under a millisecond.
             max_degree: 255,
             max_polygon: 1 << 24,

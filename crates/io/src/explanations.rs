@@ -2,6 +2,29 @@
 
 /// Every code of this crate with what it means and what can be done, in the order of the codes.
 pub const EXPLANATIONS: &[(&str, &str)] = &[
+    ("E-asc-cell", "The size of cells in an ESRI ASCII grid, cellsize or dx and dy, must be above 0."),
+    (
+        "E-asc-claim",
+        "An ESRI ASCII grid says that it has more samples than can be in the rest of the file. Nothing was allocated for them.",
+    ),
+    ("E-asc-count", "The numbers of columns and rows of an ESRI ASCII grid are whole numbers in digits alone."),
+    (
+        "E-asc-duplicate",
+        "A word of the header of an ESRI ASCII grid stands there twice, or both a corner and a centre are given.",
+    ),
+    (
+        "E-asc-finite",
+        "A number of an ESRI ASCII grid is infinite, or larger than the largest double. With the option drop_non_finite such heights become holes.",
+    ),
+    (
+        "E-asc-header",
+        "The header of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize (or dx and dy), and perhaps NODATA_value, each followed by a number. A word is missing or not one of these.",
+    ),
+    (
+        "E-asc-number",
+        "A number was expected in an ESRI ASCII grid and something else was found, such as a decimal comma.",
+    ),
+    ("E-asc-truncated", "An ESRI ASCII grid ends before it has as many samples as its header says."),
     ("E-bpt-count", "A BPT file begins with the number of patches, in digits alone. Correct the first number."),
     (
         "E-bpt-degree",
@@ -21,6 +44,26 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "E-bpt-truncated",
         "The file ends before the number of patches that its first number promises. It was cut off, or the number is wrong.",
     ),
+    ("E-dem-claim", "A profile of a USGS DEM says that it has no samples, or more than the file can hold."),
+    (
+        "E-dem-count",
+        "Record A of a USGS DEM says, in its columns 859 to 864, how many profiles there are: at least one.",
+    ),
+    ("E-dem-feature", "The profiles of this USGS DEM do not run to the north. Such files are not read."),
+    ("E-dem-header", "A number in record A of a USGS DEM is none of those that the standard has there."),
+    (
+        "E-dem-number",
+        "A number was expected in these columns of a USGS DEM. Its numbers stand in fixed columns, so that one byte too few or too many moves all that follow.",
+    ),
+    (
+        "E-dem-profile",
+        "A profile of a USGS DEM is one sample wide. This record says otherwise; it may not be where a profile begins.",
+    ),
+    (
+        "E-dem-spread",
+        "The profiles of a USGS DEM begin so far from each other that the grid around them would be nearly empty. The first place of one of them is probably wrong.",
+    ),
+    ("E-dem-truncated", "A USGS DEM ends before it has as many profiles and samples as it says."),
     ("E-format-id", "No format has this short name. The list of formats has all of them."),
     (
         "E-format-output",
@@ -80,6 +123,30 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-gltf-uri", "An embedded buffer is not base64 data."),
     ("E-gltf-version", "Only version 2.0 of glTF is read."),
+    (
+        "E-heights-channels",
+        "How bright a colour looks is no height. Heights are read from grey pictures, and from colours where the option encoding says how they mean heights: mapbox or terrarium, in 8 bits.",
+    ),
+    (
+        "E-heights-finite",
+        "A height is infinite, or becomes so by the options height and exaggeration. With the option drop_non_finite such heights become holes.",
+    ),
+    (
+        "E-heights-grid",
+        "The places of the samples are not finite numbers, their distances are not above 0, or the places are so large that neighbouring samples fall together: move the grid nearer to the origin.",
+    ),
+    (
+        "E-heights-limit",
+        "The header claims more samples than the reader's limits allow for a file of this length. Nothing was allocated for them.",
+    ),
+    (
+        "E-heights-option",
+        "An option of reading heights is out of its bounds, or does not apply: the option height is for pictures, whose samples are shades; samples that are heights already are multiplied by the option exaggeration.",
+    ),
+    (
+        "E-heights-size",
+        "A height field has at least two columns and two rows: between fewer samples there is no surface.",
+    ),
     ("E-obj-degree", "A free-form curve or surface has too few control points for its degree."),
     (
         "E-obj-finite",
@@ -125,6 +192,12 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-off-truncated", "The file ends before the numbers of vertices and faces that its header promises."),
     ("E-off-weight", "A vertex of a 4OFF file has the homogeneous weight 0: it is infinitely far away."),
+    ("E-pgm-count", "A PGM file has the numbers of columns and rows in its header, in digits alone."),
+    ("E-pgm-magic", "A PGM file begins with P2 or P5. Other kinds of Netpbm, of bits or colours, are no heights."),
+    ("E-pgm-maxval", "The largest value that a PGM file says is a whole number from 1 to 65535."),
+    ("E-pgm-number", "A sample of a PGM file in text is a whole number in digits alone."),
+    ("E-pgm-truncated", "A PGM file ends within its header, or before it has as many samples as that says."),
+    ("E-pgm-value", "A sample of a PGM file is larger than the largest value that its header says."),
     (
         "E-ply-claim",
         "The header of a PLY file promises more rows than the bytes after it have room for. The file was cut off, or its header is wrong. Nothing is allocated because a header says so.",
@@ -168,6 +241,26 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The file ends within its header or its body. It was cut off, or its header promises too much.",
     ),
     ("E-ply-type", "A property has a type that PLY does not have, or the length of a list is no whole number."),
+    (
+        "E-png-checksum",
+        "A chunk of a PNG file that is needed does not have the checksum that it should have. The file was damaged.",
+    ),
+    (
+        "E-png-claim",
+        "The header of a PNG file claims more pixels than its compressed data can hold. Nothing was allocated for them.",
+    ),
+    ("E-png-data", "The compressed data of a PNG file is damaged, though its checksums are right."),
+    (
+        "E-png-header",
+        "The chunk IHDR of a PNG file does not say what the standard has: a size, a colour type with a depth that it can have, compression 0, filter 0, interlace 0 or 1.",
+    ),
+    ("E-png-limit", "A row of a PNG file takes more memory than is allowed."),
+    (
+        "E-png-magic",
+        "A PNG file begins with eight bytes of its own. This is another kind of file, or its start is damaged.",
+    ),
+    ("E-png-order", "The first chunk of a PNG file must be IHDR."),
+    ("E-png-truncated", "A PNG file ends before its last chunk is complete, or its data before the last row."),
     ("E-read-elements", "There are more elements than 32 bits can tell apart. Cut the shape into parts."),
     ("E-read-format", "Files of this format are recognized and written, but not read yet."),
     ("E-read-io", "The input could not be read to its end."),
@@ -201,6 +294,18 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-text-encoding", "The text is in UTF-16 or UTF-32. Save it as UTF-8."),
     ("E-text-line", "A line is longer than the reader's limits allow. It may not be text at all."),
     (
+        "E-tiff-claim",
+        "The header of a TIFF file claims more samples than compressed data of its length can hold. Nothing was allocated for them.",
+    ),
+    ("E-tiff-data", "A tag or the compressed data of a TIFF file is damaged or missing."),
+    (
+        "E-tiff-feature",
+        "Heights are read from TIFF files of one channel of 8 to 64 bits, from grey with transparency and from colours of 8 or 16 bits side by side; plain or compressed by LZW, deflate or PackBits. This file is of another kind.",
+    ),
+    ("E-tiff-limit", "A strip, tile or tag of a TIFF file is larger than the image that it is for."),
+    ("E-tiff-truncated", "A TIFF file ends before its tags or its data."),
+    ("E-write-empty", "The shape has no parts, and the format has no empty files."),
+    (
         "E-write-finite",
         "A position is infinite or not a number, or becomes so where it is placed or in the numbers of the format. Repair the shape first.",
     ),
@@ -211,12 +316,34 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The format cannot hold a part of this kind. Convert the part first, to triangles for most formats.",
     ),
     ("E-write-size", "The shape has more bytes or elements than the format can count."),
+    (
+        "E-write-turned",
+        "Grids run along the axes. A height field that is turned or sheared can be written as triangles.",
+    ),
+    (
+        "W-asc-nodata",
+        "The header of an ESRI ASCII grid does not say which number stands for holes. It is -9999 then, and the grid has such numbers. If they are heights, add a line NODATA_value with another number.",
+    ),
+    (
+        "W-asc-trailing",
+        "More follows after the last sample of an ESRI ASCII grid. It was not read; the numbers of columns and rows may be wrong.",
+    ),
     ("W-bpt-empty", "The file says that it has no patches; the surface is empty."),
     (
         "W-bpt-trailing",
         "More follows after the last patch. Everything up to there was read; the number of patches in the first line may be too small.",
     ),
     ("W-bpt-up", "BPT says nothing of directions, and its readers take z as up."),
+    (
+        "W-dem-grid",
+        "Profiles of a USGS DEM do not begin at places of one grid. Their samples were moved to the nearest ones, by less than half a step.",
+    ),
+    ("W-dem-range", "The lowest and highest heights of a USGS DEM are not those that its header says."),
+    ("W-dem-twice", "Two profiles of a USGS DEM have the same place. The later one counts."),
+    (
+        "W-dem-units",
+        "A USGS DEM has places in one unit and heights in another, metres and feet. Heights were turned into the unit of places.",
+    ),
     ("W-glb-chunk", "A chunk that glTF 2.0 does not define, or not in this place, was passed over."),
     ("W-glb-color", "Colours in whole numbers are sRGB; glTF stores linear intensities, and so they were converted."),
     (
@@ -241,6 +368,28 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-gltf-position", "A primitive without positions shows nothing and was passed over."),
     ("W-gltf-rotation", "The rotation of a node must be a quaternion of unit length, and was scaled to it."),
     ("W-gltf-singular", "The transform of a node flattens space: the part has no volume, and normals no direction."),
+    (
+        "W-heights-alpha",
+        "Pixels that are partly transparent have heights as if they were opaque. Only those wholly transparent are holes.",
+    ),
+    (
+        "W-heights-degrees",
+        "Places are degrees or seconds of arc, while heights are metres. Project the file with a program for maps, or multiply heights with the option exaggeration to have sensible proportions.",
+    ),
+    ("W-heights-empty", "No sample has a height."),
+    (
+        "W-heights-grey",
+        "A picture in colours or with a palette has nothing but shades of grey: they were read exactly.",
+    ),
+    (
+        "W-heights-holes",
+        "Samples that are transparent, not a number or marked as without data are holes: cells that touch them are not part of the surface.",
+    ),
+    (
+        "W-heights-scale",
+        "A picture of whole numbers says neither how high white is nor how far apart its samples are. Say it with --set height=... and --set spacing=...",
+    ),
+    ("W-heights-spacing", "The file has heights, but not how far apart they are. Say it with --set spacing=..."),
     (
         "W-obj-color",
         "Vertex colours that are missing for some vertices or not finite were passed over; whole numbers were taken as bytes.",
@@ -288,6 +437,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-off-mixed", "Some colours are in bytes and others in fractions. All became fractions."),
     ("W-off-skipped", "A face has fewer than three corners. It was left out."),
     ("W-off-trailing", "More follows after the last face. It was not read; the number of faces may be too small."),
+    ("W-pgm-trailing", "More follows after the last sample of a PGM file. It was not read."),
     ("W-ply-degenerate", "A face names a vertex twice or has no area. It was kept."),
     (
         "W-ply-edges",
@@ -306,6 +456,12 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-ply-trailing", "Data follows after the last row that the header promises. It was passed over."),
     ("W-ply-version", "The format has another version than 1.0, the only one there is. The file was read as that."),
+    (
+        "W-png-calibration",
+        "A chunk that says what the samples of a PNG file mean was not understood and passed over: calibrations are linear ones from 0 on, sizes of pixels are in metres.",
+    ),
+    ("W-png-checksum", "A chunk of a PNG file that is not needed has a wrong checksum. It was passed over."),
+    ("W-png-trailing", "More follows after the last chunk of a PNG file. It was not read."),
     ("W-read-dropped", "Vertices at positions that are infinite or not a number were left out, as was asked for."),
     ("W-stl-color", "Some facets of a binary STL file have a colour and others have none. These were taken as white."),
     ("W-stl-degenerate", "A facet has two equal corners, or its corners lie on one line. It was kept."),
@@ -329,6 +485,11 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "W-text-encoding",
         "A name or comment is not in UTF-8, which shapes keep. Bytes that could not be read were replaced; save the file as UTF-8 to keep them.",
     ),
+    (
+        "W-tiff-grid",
+        "The tags that say where the samples of a TIFF file are make no grid along the axes. They were passed over.",
+    ),
+    ("W-tiff-images", "A TIFF file has several images, such as smaller copies of the first. The first was read."),
 ];
 
 /// The explanation of a code of this crate.

@@ -6,7 +6,10 @@ use std::io::Write;
 use shapeloom_core::Report;
 use shapeloom_shape::{Kind, Shape, UpAxis};
 
-use crate::{ReadContext, ReadError, ReadShape, WriteContext, WriteError, bpt, gltf, obj, off, ply, stl};
+use crate::{
+    ReadContext, ReadError, ReadShape, WriteContext, WriteError, asc, bpt, dem, gltf, obj, off, pgm, ply, png, stl,
+    tiff,
+};
 
 /// Reads a whole file. Errors need not name the input: [`read`](crate::read()) does.
 pub type ReadFn = fn(&[u8], &ReadContext) -> Result<ReadShape, ReadError>;
@@ -179,8 +182,20 @@ impl PartialEq for Format {
 }
 
 /// Every format, in the order in which content is tried.
-pub static FORMATS: &[Format] =
-    &[gltf::GLB, gltf::GLTF, bpt::FORMAT, ply::FORMAT, obj::FORMAT, off::FORMAT, stl::FORMAT];
+pub static FORMATS: &[Format] = &[
+    gltf::GLB,
+    gltf::GLTF,
+    bpt::FORMAT,
+    ply::FORMAT,
+    obj::FORMAT,
+    off::FORMAT,
+    stl::FORMAT,
+    png::FORMAT,
+    tiff::FORMAT,
+    pgm::FORMAT,
+    asc::FORMAT,
+    dem::FORMAT,
+];
 
 #[cfg(test)]
 mod tests {
@@ -202,7 +217,16 @@ mod tests {
 
     #[test]
     fn no_format_is_sure_of_another_ones_mark() {
-        let marks: [(&str, &[u8]); 2] = [("glb", b"glTF\x02\0\0\0"), ("ply", b"ply\nformat ascii 1.0\n")];
+        let marks: [(&str, &[u8]); 8] = [
+            ("glb", b"glTF\x02\0\0\0"),
+            ("ply", b"ply\nformat ascii 1.0\n"),
+            ("png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
+            ("tiff", b"II*\0\x08\0\0\0"),
+            ("tiff", b"MM\0*\0\0\0\x08"),
+            ("pgm", b"P5\n2 2\n255\n"),
+            ("pgm", b"P2# made\n"),
+            ("asc", b"NCOLS 3\nnrows 2\n"),
+        ];
         for (id, mark) in marks {
             let sure: Vec<&str> = FORMATS
                 .iter()

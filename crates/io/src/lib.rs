@@ -26,22 +26,27 @@
 
 pub mod text;
 
+mod asc;
 mod audit;
 mod bpt;
 mod color;
 mod cut;
+mod dem;
 mod detect;
 mod explanations;
 mod faces;
 mod format;
 mod gltf;
+mod heights;
 mod memory;
 mod obj;
 mod off;
 mod options;
 mod parts;
+mod pgm;
 mod placed;
 mod ply;
+mod png;
 mod read;
 mod read_error;
 mod siblings;
@@ -49,13 +54,14 @@ mod sink;
 mod stl;
 #[cfg(test)]
 mod test_data;
+mod tiff;
 mod write;
 mod write_error;
 
 pub use detect::{DetectError, detect, format_by_id, format_for_output};
 pub use explanations::{EXPLANATIONS, explanation};
 pub use format::{FORMATS, Format, Keeps, Precision, ReadFn, Sniff, WriteFn};
-pub use options::{Encoding, Instances, ReadOptions, WriteOptions};
+pub use options::{Encoding, HeightEncoding, Instances, ReadOptions, WriteOptions};
 pub use read::{ReadContext, ReadShape, read, slurp, slurp_sized};
 pub use read_error::{Fault, ReadError};
 pub use siblings::{SiblingError, SiblingName, SiblingOutputs, Siblings};

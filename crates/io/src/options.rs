@@ -1,6 +1,6 @@
 //! How files are read and written, where there is a choice.
 
-use shapeloom_core::{choice, options};
+use shapeloom_core::{Bounds, choice, options};
 
 options! {
     /// How files are read.
@@ -12,7 +12,28 @@ options! {
             /// Whether vertices at positions that are infinite or not a number are left out, with the elements that use
             /// them, instead of being an error.
             drop_non_finite: bool = false,
+            /// How pictures encode heights.
+            encoding: HeightEncoding = HeightEncoding::Grey,
+            /// The height of white in pictures of whole numbers, in model units: of 255, 65535, or the largest value that
+            /// the file says. 0 lets the file decide, and else takes a tenth of the longer side. Below 0 white is low.
+            height: f64 [Bounds::FINITE] = 0.0,
+            /// The distance between the samples of a picture, in model units. 0 lets the file decide, and else takes 1.
+            spacing: f64 [Bounds::NON_NEGATIVE] = 0.0,
+            /// What heights are multiplied by after all else, in every format of height fields.
+            exaggeration: f64 [Bounds::FINITE] = 1.0,
         }
+    }
+}
+
+choice! {
+    /// How pictures encode heights.
+    pub enum HeightEncoding {
+        /// The brighter the higher; colours are refused.
+        Grey = "grey",
+        /// Terrain tiles as Mapbox has them: -10000 + (red · 65536 + green · 256 + blue) / 10 metres.
+        Mapbox = "mapbox",
+        /// Terrain tiles as Mapzen has them: red · 256 + green + blue / 256 - 32768 metres.
+        Terrarium = "terrarium",
     }
 }
 

@@ -171,6 +171,11 @@ fn usual_advice(code: &str) -> Option<&'static str> {
         "missing" | "uri" | "path" => "put the file where it is looked for, or export with everything in one file",
         "cycle" | "parents" | "depth" | "sparse" | "order" => "export the file anew: it breaks a rule of its format",
         "color" | "weight" | "mesh" | "patch" => "mend the value in the file, or export it anew",
+        "checksum" | "data" => "get the file again: what it holds was damaged",
+        "size" => "use a picture of at least two columns and rows",
+        "option" => "leave the option out, or give it a value that `shapeloom explain` allows",
+        "channels" => "save the picture in grey, or say how its colours encode heights",
+        "maxval" | "value" | "cell" | "grid" | "profile" | "spread" => "mend this number, or export the file anew",
         "io" => "check that the input can be read",
         _ => return None,
     })

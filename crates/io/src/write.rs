@@ -52,11 +52,11 @@ pub fn write(
 mod tests {
     use super::*;
     use crate::{FORMATS, format_by_id};
-    use shapeloom_core::glam::DVec3;
+    use shapeloom_core::glam::{DVec2, DVec3};
     use shapeloom_core::{CancelFlag, Category, Diagnostic, Stop};
-    use shapeloom_mesh::{PolyMesh, TriMesh};
+    use shapeloom_mesh::{HeightField, PolyMesh, TriMesh};
     use shapeloom_parametric::{BezierPatch, BezierSurface};
-    use shapeloom_shape::Part;
+    use shapeloom_shape::{Kind, Part};
 
     fn surface() -> Part {
         let control = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
@@ -65,6 +65,10 @@ mod tests {
 
     fn triangle() -> Part {
         Part::new(TriMesh::try_new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]]).unwrap())
+    }
+
+    fn heights() -> Part {
+        Part::new(HeightField::try_new(2, 2, DVec2::ONE, vec![0.0, 1.0, 2.0, 3.0]).unwrap())
     }
 
     fn polygon() -> Part {
@@ -104,7 +108,11 @@ mod tests {
         flag.cancel();
         let cancelled = WriteContext { exec: Exec::default().with_cancel(&flag), ..WriteContext::default() };
         for format in FORMATS.iter().filter(|format| format.writes.is_some()) {
-            let shape = Shape::new(if format.id == "bpt" { surface() } else { triangle() });
+            let shape = Shape::new(match format.kinds {
+                kinds if kinds.contains(&Kind::TriMesh) => triangle(),
+                kinds if kinds.contains(&Kind::HeightField) => heights(),
+                _ => surface(),
+            });
             let error = write(&shape, format, &WriteContext::default(), &mut Full).unwrap_err();
             assert_eq!((error.code(), error.category()), ("E-write-io", Category::CannotWrite), "{}", format.id);
             let stopped = write(&shape, format, &cancelled, &mut Vec::new());

@@ -38,6 +38,20 @@ pub enum WriteError {
         /// Which one.
         index: usize,
     },
+    /// Nothing that the format could hold: it has no empty files.
+    Empty {
+        /// The id of the format.
+        format: &'static str,
+    },
+    /// A height field whose rows and columns do not run along the axes of space, in a format without directions.
+    Turned {
+        /// The id of the format.
+        format: &'static str,
+        /// Which part.
+        part: usize,
+        /// Its name, if it has one.
+        name: String,
+    },
     /// More than the format can count.
     TooLarge {
         /// The id of the format.
@@ -81,6 +95,15 @@ impl fmt::Display for WriteError {
                      numbers, expected finite coordinates ({code})"
                 )
             }
+            Self::Empty { format } => write!(f, "{format}: found no parts, expected one ({code})"),
+            Self::Turned { format, part, name } => {
+                let name = if name.is_empty() { String::new() } else { format!(" \"{name}\"") };
+                write!(
+                    f,
+                    "{format}: part {part}{name}: found a height field that is turned or sheared, expected rows and \
+                     columns along the axes and heights upward ({code})"
+                )
+            }
             Self::TooLarge { format, what, found, max } => {
                 write!(f, "{format}: found {found} {what}, expected at most {max} ({code})")
             }
@@ -99,6 +122,8 @@ impl Diagnostic for WriteError {
             Self::NoWriter { .. } => "E-write-format",
             Self::Unsupported { .. } => "E-write-kind",
             Self::NotFinite { .. } => "E-write-finite",
+            Self::Empty { .. } => "E-write-empty",
+            Self::Turned { .. } => "E-write-turned",
             Self::TooLarge { .. } => "E-write-size",
             Self::Io { .. } => "E-write-io",
             Self::Stop(stop) => stop.code(),
@@ -108,9 +133,9 @@ impl Diagnostic for WriteError {
 
     fn category(&self) -> Category {
         match self {
-            Self::NoWriter { .. } | Self::Unsupported { .. } => Category::Unsupported,
+            Self::NoWriter { .. } | Self::Unsupported { .. } | Self::Turned { .. } => Category::Unsupported,
             Self::NotFinite { .. } => Category::Failed,
-            Self::TooLarge { .. } | Self::Io { .. } => Category::CannotWrite,
+            Self::Empty { .. } | Self::TooLarge { .. } | Self::Io { .. } => Category::CannotWrite,
             Self::Stop(stop) => stop.category(),
             Self::OverBudget(over) => over.category(),
         }
@@ -124,6 +149,10 @@ impl Diagnostic for WriteError {
             }
             Self::Unsupported { .. } => Some("convert the part to a kind that the format holds first".into()),
             Self::NotFinite { .. } => Some("repair the shape first".into()),
+            Self::Empty { .. } => Some("check that the input holds what was meant to be written".into()),
+            Self::Turned { .. } => {
+                Some("turn it back, or convert it to triangles and choose a format of meshes".into())
+            }
             Self::TooLarge { .. } => Some("write fewer parts a file, simplify, or choose another format".into()),
             Self::Io { .. } => None,
             Self::Stop(stop) => stop.advice(),

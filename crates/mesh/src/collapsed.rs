@@ -6,6 +6,11 @@
 /// Then dropping the collapsed ones takes nothing from the surface, and a bound that held for them holds for what is left.
 /// Cost: the triangles left times the logarithm of the number of collapsed ones.
 pub fn collapsed_leave_traces(collapsed: &[[u32; 3]], left: &[[u32; 3]]) -> bool {
+    leave_traces(collapsed, left.iter().map(<[u32; 3]>::as_slice))
+}
+
+/// The same where faces of any number of corners are left.
+pub(crate) fn leave_traces<'a>(collapsed: &[[u32; 3]], left: impl Iterator<Item = &'a [u32]>) -> bool {
     if collapsed.is_empty() {
         return true;
     }
@@ -14,10 +19,12 @@ pub fn collapsed_leave_traces(collapsed: &[[u32; 3]], left: &[[u32; 3]]) -> bool
     traces.sort_unstable();
     traces.dedup();
     let mut seen = vec![false; traces.len()];
-    for &[a, b, c] in left {
-        for [p, q] in [[a, b], [b, c], [c, a], [a, a], [b, b], [c, c]] {
-            if let Ok(found) = traces.binary_search(&[p.min(q), p.max(q)]) {
-                seen[found] = true;
+    for face in left {
+        for (&p, &q) in face.iter().zip(face.iter().cycle().skip(1)) {
+            for trace in [[p.min(q), p.max(q)], [p, p]] {
+                if let Ok(found) = traces.binary_search(&trace) {
+                    seen[found] = true;
+                }
             }
         }
     }

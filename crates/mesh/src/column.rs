@@ -365,8 +365,10 @@ impl Column {
             let mut sums = vec![0.0; column.width];
             for bounds in starts.windows(2) {
                 let part = bounds[0] as usize..bounds[1] as usize;
+                let whole = weights[part.clone()] == [1.0];
                 let terms = sources[part.clone()].iter().zip(&weights[part]);
-                if column.blend == Blend::Copy {
+                // One whole source is copied too: a direction, or a zero with its sign, keeps its bits.
+                if column.blend == Blend::Copy || whole {
                     let first = heaviest(terms).unwrap_or(0) as usize * column.width;
                     out.extend_from_slice(&values[first..first + column.width]);
                     continue;

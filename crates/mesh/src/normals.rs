@@ -27,6 +27,12 @@ pub fn newell_vector(outline: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     spokes.clone().zip(spokes.skip(1)).map(|(a, b)| a.cross(b)).sum()
 }
 
+/// The length of a vector, also where its square is no number.
+pub(crate) fn length(vector: DVec3) -> f64 {
+    let size = vector.abs().max_element();
+    if size > 0.0 { (vector / size).length() * size } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -130,7 +130,7 @@ impl PolyMesh {
     }
 
     /// The vertices of each face.
-    pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = &[u32]> + Clone {
         (0..self.face_count()).map(|face| self.face(face))
     }
 

@@ -5,6 +5,7 @@ use shapeloom_core::{
     Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Report, choice, options,
 };
 
+use crate::stray_samples::tell_strays;
 use crate::{Column, Domain, HeightField, MeshError, TEXCOORD, TriMesh};
 
 choice! {
@@ -22,7 +23,8 @@ choice! {
 options! {
     /// Cuts each cell of a height field into two triangles.
     ///
-    /// Every sample that borders a whole cell becomes a vertex; cells that touch a hole are left out. Against the
+    /// Every sample that borders a whole cell becomes a vertex; cells that touch a hole are left out, and the
+    /// report counts the samples that border no whole cell. Against the
     /// bilinear surface a cell deviates by at most a quarter of |h00 - h10 - h01 + h11|, in the middle of its diagonal:
     /// the report has the largest, stretched as the placement stretches heights. Texture coordinates run from 0 to 1
     /// over the grid. Cost: linear.
@@ -94,6 +96,7 @@ impl Convert<HeightField> for TriangulateHeightField {
             Report::new(Self::NAME, deviation, "a quarter of each cell's twist, against the bilinear surface");
         report.figure("vertices", mesh.positions().len() as f64);
         report.figure("triangles", mesh.triangles().len() as f64);
+        tell_strays(source, &mut report, exec)?;
         Ok(Converted::new(mesh, report))
     }
 }

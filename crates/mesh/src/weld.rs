@@ -4,33 +4,35 @@ use std::collections::HashMap;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
-    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Loss, Options, Report, options,
+    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Loss, Options, Report, Stop, options,
 };
 
-use crate::{Column, Domain, ListColumn, MeshError, MeshOrigins, Origins, TriMesh, carry, collapsed_leave_traces};
+use crate::collapsed::leave_traces;
+use crate::{Column, ListColumn, MeshAttributes, MeshError, MeshOrigins, Origins, PolyMesh, TriMesh, carry};
 
 options! {
-    /// Merges vertices that lie within a distance of each other, and drops triangles that collapse.
+    /// Merges vertices that lie within a distance of each other, and drops faces that collapse.
     ///
     /// Vertices are taken in order; each joins the nearest vertex kept so far within the distance, else it is kept. No
     /// vertex moves farther than the distance, and chains do not creep. At distance 0 vertices with equal coordinates
-    /// merge (-0 equals 0). Where merged vertices disagree about an attribute it moves to the wedges, so that nothing
-    /// is lost. Vertices without triangles are kept if no other is near. Cost: linear in the number of vertices for
+    /// merge (-0 equals 0). Corners of a face that follow one another at one vertex become one; what is left with fewer than
+    /// three is dropped. Where merged vertices disagree about an attribute it moves to the wedges, so that nothing
+    /// is lost. Vertices without faces are kept if no other is near. Cost: linear in the number of vertices for
     /// reasonable distances.
     pub struct Weld("weld") {
         required {}
         optional {
             /// The largest distance between vertices that merge, in model units.
             distance: f64 [Bounds::NON_NEGATIVE] = 0.0,
-            /// Whether triangles with two equal corners are dropped.
+            /// Whether corners that merge with the next one of their face are dropped, and faces that keep fewer than three.
             drop_collapsed: bool = true,
         }
     }
 }
 
 /// Welds equal positions only: a tolerance for a whole conversion is no licence to merge what is apart.
-impl FromTolerance<TriMesh> for Weld {
-    fn from_tolerance(_: &TriMesh, _: f64) -> Self {
+impl<S> FromTolerance<S> for Weld {
+    fn from_tolerance(_: &S, _: f64) -> Self {
         Self::new()
     }
 }
@@ -39,57 +41,130 @@ impl Convert<TriMesh> for Weld {
     type Output = TriMesh;
 
     fn convert_with(&self, source: &TriMesh, exec: &Exec) -> Result<Converted<TriMesh>, ConvertError> {
+        let bytes = source.memory_bytes() as u64;
+        let faces = source.triangles().iter().map(<[u32; 3]>::as_slice);
+        let mut welded = self.weld(source.positions(), faces, source.attributes(), bytes, exec)?;
+        welded.report.figure("triangles_dropped", (source.triangles().len() + 1 - welded.starts.len()) as f64);
+        // A triangle that lost a corner is gone.
+        let triangles = welded.corners.as_chunks().0.to_vec();
+        let mesh = TriMesh::with_attributes(welded.positions, triangles, welded.attributes)?;
+        Ok(Converted::new(mesh, welded.report))
+    }
+}
+
+impl Convert<PolyMesh> for Weld {
+    type Output = PolyMesh;
+
+    fn convert_with(&self, source: &PolyMesh, exec: &Exec) -> Result<Converted<PolyMesh>, ConvertError> {
+        let bytes = source.memory_bytes() as u64;
+        let mut welded = self.weld(source.positions(), source.faces(), source.attributes(), bytes, exec)?;
+        welded.report.figure("faces_dropped", (source.face_count() + 1 - welded.starts.len()) as f64);
+        let mesh = PolyMesh::with_attributes(welded.positions, welded.starts, welded.corners, welded.attributes)?;
+        Ok(Converted::new(mesh, welded.report))
+    }
+}
+
+/// What becomes of a mesh.
+struct Welded {
+    positions: Vec<DVec3>,
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+    attributes: MeshAttributes,
+    report: Report,
+}
+
+impl Weld {
+    fn weld<'a>(
+        &self,
+        positions: &[DVec3],
+        faces: impl Iterator<Item = &'a [u32]> + Clone,
+        attributes: &MeshAttributes,
+        bytes: u64,
+        exec: &Exec,
+    ) -> Result<Welded, ConvertError> {
         self.validate()?;
-        if let Some(vertex) = source.first_non_finite() {
+        let mut stop = None;
+        let infinite = polled(positions.iter(), exec, &mut stop).position(|position| !position.is_finite());
+        stopped(stop)?;
+        if let Some(vertex) = infinite {
             return Err(MeshError::NotFinite { kind: "vertex", index: vertex as u64 }.into());
         }
         // The hash table takes about 48 bytes a vertex; the result at most what the source takes, and once more for
         // attributes that move to the wedges.
-        let vertices = source.positions().len() as u64;
-        let _memory = exec.reserve((vertices * 64).saturating_add(3 * source.memory_bytes() as u64))?;
-        let groups = self.group(source.positions(), exec)?;
+        let _memory = exec.reserve((positions.len() as u64 * 64).saturating_add(3 * bytes))?;
+        let groups = self.group(positions, exec)?;
         exec.check()?;
-
-        let moved = (0..groups.of.len())
-            .map(|vertex| source.positions()[vertex].distance(source.positions()[groups.leader(vertex)]))
+        let moved = polled(0..groups.of.len(), exec, &mut stop)
+            .map(|vertex| positions[vertex].distance(positions[groups.leader(vertex)]))
             .fold(0.0, f64::max);
-        let merged = source.triangles().iter().map(|triangle| triangle.map(|vertex| groups.of[vertex as usize]));
-        let collapsed = |[a, b, c]: [u32; 3]| a == b || b == c || c == a;
-        let (mut triangles, mut faces, mut gone) = (Vec::new(), Vec::new(), Vec::new());
-        for (face, triangle) in merged.enumerate() {
-            if self.drop_collapsed && collapsed(triangle) {
-                gone.push(triangle);
-            } else {
-                triangles.push(triangle);
-                faces.push(face as u32);
-            }
-        }
+        stopped(stop)?;
+        let kept = self.merge_corners(polled(faces.clone(), exec, &mut stop), &groups);
+        stopped(stop)?;
         let mut report = Report::new(Self::NAME, Deviation::Exact, "only vertices of equal position merge");
         if moved > 0.0 {
             report.deviation = Deviation::AtMost(moved);
             report.basis = "the largest move of a vertex".to_owned();
         }
-        if !collapsed_leave_traces(&gone, &triangles) {
+        let left = kept.starts.windows(2).map(|pair| &kept.corners[pair[0] as usize..pair[1] as usize]);
+        let all_traced = leave_traces(&kept.gone, polled(left, exec, &mut stop));
+        stopped(stop)?;
+        if !all_traced {
             report.deviation = Deviation::Unknown;
             report.basis = "parts of the surface collapsed to points or segments and were dropped".to_owned();
         }
-
         exec.check()?;
-        let mut source = source.clone();
-        promote_disagreeing(&mut source, &groups, &mut report);
-        let wedges = faces.iter().flat_map(|face| [face * 3, face * 3 + 1, face * 3 + 2]).collect();
+        let mut attributes = attributes.clone();
+        promote_disagreeing(&mut attributes, faces.flatten().copied(), &groups, &mut report, exec)?;
         let origins = MeshOrigins {
             vertex: Origins::Copies(groups.leaders.clone()),
-            face: Origins::Copies(faces),
-            wedge: Origins::Copies(wedges),
+            face: Origins::Copies(kept.faces),
+            wedge: Origins::Copies(kept.wedges),
         };
-        let (attributes, losses) = carry(source.attributes(), &origins);
+        let (attributes, losses) = carry(&attributes, &origins);
         report.losses.extend(losses);
-        let positions = groups.leaders.iter().map(|&leader| source.positions()[leader as usize]).collect();
-        report.figure("vertices_merged", (source.positions().len() - groups.leaders.len()) as f64);
-        report.figure("triangles_dropped", gone.len() as f64);
-        Ok(Converted::new(TriMesh::with_attributes(positions, triangles, attributes)?, report))
+        report.figure("vertices_merged", (positions.len() - groups.leaders.len()) as f64);
+        let positions = groups.leaders.iter().map(|&leader| positions[leader as usize]).collect();
+        Ok(Welded { positions, starts: kept.starts, corners: kept.corners, attributes, report })
     }
+
+    fn merge_corners<'a>(&self, faces: impl Iterator<Item = &'a [u32]>, groups: &Groups) -> Kept {
+        let mut kept = Kept { starts: vec![0], ..Kept::default() };
+        let mut first = 0;
+        for (face, corners) in (0..).zip(faces) {
+            let start = kept.corners.len();
+            let mut before = groups.of[corners[corners.len() - 1] as usize];
+            for (wedge, &vertex) in (first..).zip(corners) {
+                let merged = groups.of[vertex as usize];
+                if !self.drop_collapsed || merged != before {
+                    kept.corners.push(merged);
+                    kept.wedges.push(wedge);
+                }
+                before = merged;
+            }
+            first += corners.len() as u32;
+            if kept.corners.len() - start >= 3 {
+                kept.faces.push(face);
+                kept.starts.push(kept.corners.len() as u32);
+            } else {
+                // One vertex, or two.
+                let [a, b] = [0, 1].map(|i| kept.corners.get(start + i).copied().unwrap_or(before));
+                kept.gone.push([a, b, b]);
+                kept.corners.truncate(start);
+                kept.wedges.truncate(start);
+            }
+        }
+        kept
+    }
+}
+
+/// The faces that are left, where they and their corners come from, and what the others shrank to.
+#[derive(Default)]
+struct Kept {
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+    faces: Vec<u32>,
+    wedges: Vec<u32>,
+    gone: Vec<[u32; 3]>,
 }
 
 /// Which vertices merge: the group of each, and the vertex that leads each group.
@@ -162,38 +237,62 @@ fn group_equal(positions: &[DVec3], exec: &Exec) -> Result<Groups, ConvertError>
     Ok(groups)
 }
 
-/// Moves the vertex attributes about which merged vertices disagree to the wedges.
-fn promote_disagreeing(mesh: &mut TriMesh, groups: &Groups, report: &mut Report) {
-    let disagree = |column: &Column| (0..groups.of.len()).any(|vertex| !column.same(vertex, groups.leader(vertex)));
-    let names: Vec<String> = mesh
-        .attributes()
-        .vertex
-        .iter()
-        .filter(|column| disagree(column))
-        .map(|column| column.name().to_owned())
-        .collect();
+/// Moves the vertex attributes about which merged vertices disagree to the wedges, whose vertices are given.
+fn promote_disagreeing(
+    attributes: &mut MeshAttributes,
+    corners: impl Iterator<Item = u32>,
+    groups: &Groups,
+    report: &mut Report,
+    exec: &Exec,
+) -> Result<(), Stop> {
+    let mut stop = None;
+    let mut disagree = |column: &&Column| {
+        polled(0..groups.of.len(), exec, &mut stop).any(|vertex| !column.same(vertex, groups.leader(vertex)))
+    };
+    let names: Vec<String> =
+        attributes.vertex.iter().filter(&mut disagree).map(|column| column.name().to_owned()).collect();
+    stopped(stop)?;
+    let corners: Vec<u32> = if names.is_empty() { Vec::new() } else { polled(corners, exec, &mut stop).collect() };
+    stopped(stop)?;
     for name in names {
         let what = format!("vertex attribute \"{name}\"");
-        if mesh.attribute(Domain::Wedge, &name).is_some() {
+        if attributes.wedge.get(&name).is_some() {
             report.losses.push(Loss::new(what, "merged vertices disagree, and a wedge attribute has that name"));
-        } else if let Some(column) = mesh.remove_attribute(Domain::Vertex, &name) {
-            let corners = column.gathered(mesh.triangles().as_flattened());
-            mesh.insert_attribute(Domain::Wedge, corners).expect("a wedge for each corner, and the name is free");
+        } else if let Some(column) = attributes.vertex.remove(&name) {
+            attributes.wedge.insert(column.gathered(&corners)).expect("a wedge for each corner, and the name is free");
         }
     }
-    let lists = mesh.attributes().vertex.lists().iter();
-    let disagree = |list: &&ListColumn| (0..groups.of.len()).any(|vertex| !list.same(vertex, groups.leader(vertex)));
-    let names: Vec<String> = lists.filter(disagree).map(|list| list.name().to_owned()).collect();
+    let disagree = |list: &&ListColumn| {
+        polled(0..groups.of.len(), exec, &mut stop).any(|vertex| !list.same(vertex, groups.leader(vertex)))
+    };
+    let lists = attributes.vertex.lists().iter().filter(disagree);
+    let names: Vec<String> = lists.map(|list| list.name().to_owned()).collect();
+    stopped(stop)?;
     for name in names {
-        mesh.remove_list(Domain::Vertex, &name);
+        attributes.vertex.remove_list(&name);
         report.losses.push(Loss::new(format!("vertex list \"{name}\""), "merged vertices disagree"));
     }
+    Ok(())
+}
+
+/// The items, with a poll before every 4096th; at a stop they end, and `stop` has why.
+fn polled<T>(items: impl Iterator<Item = T>, exec: &Exec, stop: &mut Option<Stop>) -> impl Iterator<Item = T> {
+    items.enumerate().map_while(move |(index, item)| {
+        if index.is_multiple_of(4096) {
+            *stop = exec.check().err();
+        }
+        stop.is_none().then_some(item)
+    })
+}
+
+fn stopped(stop: Option<Stop>) -> Result<(), Stop> {
+    stop.map_or(Ok(()), Err)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{TEXCOORD, TriangulatePolygons, Values};
+    use crate::{Domain, TEXCOORD, TriangulatePolygons, Values};
 
     /// The cube with every corner of every triangle a vertex of its own.
     fn soup() -> TriMesh {
@@ -278,5 +377,81 @@ mod tests {
         assert_eq!(Weld::new().convert(&mesh).unwrap().value.positions().len(), 1);
         let mesh = TriMesh::try_new(vec![DVec3::NAN], vec![]).unwrap();
         assert!(Weld::new().convert(&mesh).is_err());
+    }
+
+    /// The cube with every corner of every face a vertex of its own.
+    fn apart() -> PolyMesh {
+        let cube = crate::poly_mesh::tests::unit_cube();
+        let positions = (0..6).flat_map(|face| cube.outline(face)).collect();
+        PolyMesh::try_new(positions, cube.face_starts().to_vec(), (0..24).collect()).unwrap()
+    }
+
+    #[test]
+    fn polygons_weld_to_their_cube() {
+        let mut mesh = apart();
+        mesh.insert_attribute(Domain::Vertex, Column::labels("side", (0..24).map(|corner| corner / 4).collect()))
+            .unwrap();
+        let Converted { value: welded, report } = Weld::new().convert(&mesh).unwrap();
+        assert_eq!((welded.positions().len(), welded.face_count(), welded.volume()), (8, 6, 1.0));
+        assert_eq!((report.deviation, report.find("vertices_merged")), (Deviation::Exact, Some(16.0)));
+        let sides = welded.attribute(Domain::Wedge, "side").unwrap();
+        assert!((0..24).all(|wedge| sides.number(wedge, 0) == (wedge / 4) as f64));
+    }
+
+    #[test]
+    fn corners_that_merge_become_one_and_faces_of_two_go() {
+        // A pentagon whose first and last corners merge, a square that becomes a side of it, a triangle at one point of it.
+        let (near, far) = (1e-6, 1.0);
+        let xy = |x: f64, y: f64| DVec3::new(x, y, 0.0);
+        let positions = vec![xy(0.0, 0.0), xy(far, 0.0), xy(far, far), xy(0.0, far), xy(0.0, near), xy(far, near)];
+        let faces = [vec![0, 1, 2, 3, 4], vec![0, 1, 5, 4], vec![1, 5, 1]];
+        let mut mesh = PolyMesh::from_faces(positions, &faces).unwrap();
+        mesh.insert_attribute(Domain::Wedge, Column::labels("corner", (0..12).collect())).unwrap();
+        mesh.insert_attribute(Domain::Face, Column::labels("face", vec![7, 8, 9])).unwrap();
+        let weld = Weld { distance: 1e-3, ..Weld::new() };
+        let Converted { value: welded, report } = weld.convert(&mesh).unwrap();
+        assert_eq!((welded.positions().len(), welded.face_count()), (4, 1));
+        // The later of two corners goes, also where it is the first of the face.
+        assert_eq!(welded.face(0), [1, 2, 3, 0]);
+        assert_eq!(welded.attribute(Domain::Wedge, "corner").unwrap().values(), &Values::U32(vec![1, 2, 3, 4]));
+        assert_eq!(welded.attribute(Domain::Face, "face").unwrap().values(), &Values::U32(vec![7]));
+        assert_eq!((report.deviation, report.find("faces_dropped")), (Deviation::AtMost(near), Some(2.0)));
+        let all = Weld { drop_collapsed: false, ..weld }.convert(&mesh).unwrap().value;
+        assert_eq!((all.face(0), all.face(1), all.face(2)), (&[0, 1, 2, 3, 0][..], &[0, 1, 1, 0][..], &[1, 1, 1][..]));
+    }
+
+    #[test]
+    fn triangles_weld_alike_as_polygons() {
+        let mut mesh = soup();
+        mesh.insert_attribute(Domain::Vertex, Column::labels("number", (0..36).collect())).unwrap();
+        mesh.insert_attribute(Domain::Face, Column::labels("face", (0..12).collect())).unwrap();
+        for distance in [0.0, 1.1, 1.5] {
+            let weld = Weld { distance, ..Weld::new() };
+            let triangles = weld.convert(&mesh).unwrap();
+            let polygons = weld.convert(&PolyMesh::from(mesh.clone())).unwrap();
+            assert_eq!(PolyMesh::from(triangles.value), polygons.value, "{distance}");
+            assert_eq!(triangles.report.deviation, polygons.report.deviation, "{distance}");
+        }
+    }
+
+    /// Grouping, finding infinite coordinates, moves, merging of faces and traces poll each.
+    #[test]
+    fn every_loop_polls() {
+        let count = 50 * 4096u32;
+        let positions = (0..count).map(|i| DVec3::splat(f64::from(i / 4))).collect();
+        let triangles = (0..count).map(|i| [i, (i + 4) % count, (i + 8) % count]).collect();
+        let mut mesh = TriMesh::try_new(positions, triangles).unwrap();
+        let plain = crate::poll_count::polls(&|exec| drop(Weld::new().convert_with(&mesh, exec).unwrap()));
+        assert!(plain >= 4 * 50, "{plain}");
+        mesh.insert_attribute(Domain::Vertex, Column::labels("quarter", (0..count).map(|i| i / 4).collect())).unwrap();
+        let labelled = crate::poll_count::polls(&|exec| drop(Weld::new().convert_with(&mesh, exec).unwrap()));
+        assert!(labelled >= plain + 50, "{labelled}");
+        for stop_at in [1, 60, 110, 160, labelled - 10] {
+            let seen = std::sync::atomic::AtomicU64::new(0);
+            let exec = Exec::default().with_watch(move || {
+                (seen.fetch_add(1, std::sync::atomic::Ordering::Relaxed) >= stop_at).then_some(Stop::Cancelled)
+            });
+            assert!(Weld::new().convert_with(&mesh, &exec).is_err(), "{stop_at}");
+        }
     }
 }

@@ -26,8 +26,9 @@ pub(crate) fn run(arguments: &ConvertArguments, session: &mut Session<'_>) -> Re
     let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     delivery.check(session)?;
     let wish = wish(&arguments.way, delivery.format.kinds)?;
+    delivery.check_picture(&input.read.shape)?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
-    let job = Job { wish, tolerance, settings: settings.others };
+    let job = Job { wish, tolerance, settings: settings.converting(input.format) };
     let source = json!({
         "name": input.name, "format": input.format.id, "bytes": input.bytes,
         "findings": account::findings(&input.read.findings), "losses": account::losses(&input.read.losses),
@@ -113,6 +114,22 @@ impl<'a> Delivery<'a> {
             return Err(Failure::usage("E-usage-outputs", message));
         }
         paths.into_iter().try_for_each(|path| check_free(path, self.target.force))
+    }
+
+    /// Refuses a file of heights in the format of pictures where nothing leads to heights: a picture was meant.
+    fn check_picture(&self, shape: &Shape) -> Result<(), Failure> {
+        let anywhere = Wish::to(self.format.kinds);
+        let reaches = shape.parts.iter().any(|part| plan(part.geometry.kind(), &anywhere).is_ok());
+        if self.format.id != "png" || reaches || shape.parts.is_empty() {
+            return Ok(());
+        }
+        let kinds: Vec<&str> = shape.kinds().into_iter().map(Kind::name).collect();
+        Err(Failure::Own {
+            code: "E-plan-no-way",
+            category: Category::Unsupported,
+            message: format!("{}: found {}, expected a height field", self.target.output.display(), kinds.join(", ")),
+            advice: Some("`shapeloom render IN OUT.png` draws pictures; a PNG file of a shape holds heights".into()),
+        })
     }
 
     /// Converts a shape, itself `made` with some deviation, and writes everything, or nothing.

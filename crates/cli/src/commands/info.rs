@@ -20,7 +20,7 @@ pub(crate) fn run(arguments: &InfoArguments, session: &mut Session<'_>) -> Resul
     let settings = Settings::sort(&arguments.settings);
     settings.no_writing()?;
     let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
-    if let Some((key, _)) = settings.others.first() {
+    if let Some((key, _)) = settings.converting(input.format).first() {
         let message = format!("found --set {key}, expected an option of the input");
         return Err(Failure::usage("E-usage-setting", message));
     }
@@ -192,6 +192,16 @@ impl Totals {
                 self.count(&mut object, "samples", field.heights().len());
                 object.insert("columns".into(), json!(field.columns()));
                 object.insert("rows".into(), json!(field.rows()));
+                object.insert("spacing".into(), json!([field.spacing().x, field.spacing().y]));
+                let holes = field.heights().iter().filter(|height| height.is_nan()).count();
+                self.count(&mut object, "holes", holes);
+                let known = field.heights().iter().filter(|height| !height.is_nan());
+                let (low, high) =
+                    known.fold((f64::MAX, f64::MIN), |(low, high), height| (low.min(*height), high.max(*height)));
+                if low <= high {
+                    object.insert("lowest".into(), account::number(low));
+                    object.insert("highest".into(), account::number(high));
+                }
             }
             Geometry::BezierCurve(curve) => {
                 self.count(&mut object, "control_points", curve.control_points().len());

@@ -4,7 +4,7 @@ use serde_json::json;
 use shapeloom_convert::{Job, Wish};
 use shapeloom_core::{ChoiceOption, ConvertError, Converted, Exec, Options, Tolerance};
 use shapeloom_mesh::PolyMesh;
-use shapeloom_mesh::primitives::{Cone, Cylinder, Grid, Platonic, Solid, Sphere, Torus};
+use shapeloom_mesh::primitives::{Cone, Cylinder, Ellipsoid, Grid, Platonic, Quadric, Solid, Sphere, Torus};
 use shapeloom_shape::{Part, Shape, UpAxis};
 
 use super::convert::Delivery;
@@ -15,10 +15,10 @@ use crate::session::Session;
 use crate::settings;
 
 pub(crate) fn run(arguments: &MakeArguments, session: &mut Session<'_>) -> Result<(), Failure> {
-    let settings = settings::Settings::sort(&arguments.settings);
+    let settings = settings::Settings::of_made(&arguments.settings);
     let delivery = Delivery::new(&arguments.target, &settings)?;
     delivery.check(session)?;
-    let made = make(&arguments.shape, &settings.others, &session.exec())?;
+    let made = make(&arguments.shape, settings.making(), &session.exec())?;
     session.say(format_args!(
         "{}: {} faces; error {}",
         arguments.shape,
@@ -56,9 +56,12 @@ fn make(name: &str, settings: Settings<'_>, exec: &Exec) -> Result<Converted<Pol
         Cylinder::NAME => with(Cylinder::new(), settings, |shape| shape.mesh(exec)),
         Cone::NAME => with(Cone::new(), settings, |shape| shape.mesh(exec)),
         Grid::NAME => with(Grid::new(), settings, |shape| shape.mesh(exec)),
+        Ellipsoid::NAME => with(Ellipsoid::new(), settings, |shape| shape.mesh(exec)),
+        Quadric::NAME => with(Quadric::new(), settings, |shape| shape.mesh(exec)),
         _ => {
             let mut known = Solid::NAMES.to_vec();
             known.extend([Sphere::NAME, Torus::NAME, Cylinder::NAME, Cone::NAME, Grid::NAME]);
+            known.extend([Ellipsoid::NAME, Quadric::NAME]);
             let message = format!("found shape \"{name}\", expected one of {}", known.join(", "));
             Err(Failure::usage("E-usage-shape", message))
         }

@@ -11,3 +11,4 @@ pub(crate) mod graph;
 pub(crate) mod info;
 pub(crate) mod make;
 pub(crate) mod render;
+pub(crate) mod structures;

@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &RenderArguments, session: &mut Session<'_>) -> Res
     let input = input::open(&arguments.input, &arguments.source, &settings, session)?;
     let wish = wish(&arguments.way, &[Kind::TriMesh])?;
     let tolerance = absolute(tolerance, &input.read.shape, &wish)?;
-    let job = Job { wish, tolerance, settings: settings.others };
+    let job = Job { wish, tolerance, settings: settings.converting(input.format) };
     session.stage("converting");
     let mut scene = Stage::new(&input.read.shape, &job, session)?;
     if session.globals.strict {

@@ -4,15 +4,19 @@
 
 mod cone;
 mod cylinder;
+mod ellipsoid;
 mod grid;
 mod platonic;
+mod quadric;
 mod sphere;
 mod torus;
 
 pub use cone::Cone;
 pub use cylinder::Cylinder;
+pub use ellipsoid::{Ellipsoid, SphereCut};
 pub use grid::Grid;
 pub use platonic::{Platonic, Solid};
+pub use quadric::{Quadric, QuadricShape};
 pub use sphere::Sphere;
 pub use torus::Torus;
 

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 use shapeloom_core::{Tolerance, ToleranceError, Words};
+use shapeloom_io::format_by_id;
 use shapeloom_judge::Distances;
 
 use crate::account;
@@ -18,6 +19,7 @@ use crate::failure::Failure;
 use crate::input::is_stream;
 use crate::output::{check_free, commit};
 use crate::session::Session;
+use crate::settings::Settings;
 use comparison::{Comparison, Verdict};
 
 pub(crate) fn run(arguments: &CompareArguments, session: &mut Session<'_>) -> Result<(), Failure> {
@@ -43,6 +45,8 @@ pub(crate) fn run(arguments: &CompareArguments, session: &mut Session<'_>) -> Re
         let up = subjects[0].shape.up;
         subjects.push(Subject::open(path, &arguments.way, &arguments.source, up, session)?);
     }
+    let formats = subjects.iter().map(|subject| format_by_id(subject.format)).collect::<Result<Vec<_>, _>>()?;
+    Settings::for_several(&arguments.way.settings).check_heeded(&formats)?;
     let options = Distances {
         relative_gap: arguments.accuracy,
         max_splits: arguments.max_splits,

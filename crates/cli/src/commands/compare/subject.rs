@@ -53,7 +53,7 @@ impl Subject {
         up: Option<UpAxis>,
         session: &mut Session<'_>,
     ) -> Result<Self, Failure> {
-        let settings = Settings::sort(&way.settings);
+        let settings = Settings::for_several(&way.settings);
         settings.no_writing()?;
         let tolerance = way.tolerance()?;
         let input = input::open(path, source, &settings, session)?;
@@ -67,7 +67,7 @@ impl Subject {
         let kinds = shape.kinds().into_iter().map(Kind::name).collect();
         let wish = wish(way, &KINDS)?;
         let tolerance = absolute(tolerance, &shape, &wish)?;
-        let job = Job { wish, tolerance, settings: settings.others };
+        let job = Job { wish, tolerance, settings: settings.converting(input.format) };
         session.stage("converting");
         if let Some(part) = shape.parts.first() {
             // A clear word where no part can be compared.

@@ -1,0 +1,272 @@
+//! Reading TIFF.
+
+use std::io::Cursor;
+
+use shapeloom_core::glam::DVec2;
+use shapeloom_core::{Category, Findings, Place, Severity};
+use shapeloom_shape::Units;
+use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError};
+
+use super::geo::Geo;
+use crate::heights::{
+    Channels, DEGREES, NorthFirst, Pixels, check_options, check_size, guess_spacing, no_height, part_of, picture_scale,
+    room, shape_of,
+};
+use crate::memory::Memory;
+use crate::{Fault, HeightEncoding, ReadContext, ReadError, ReadShape};
+
+/// LZW gives at most about 1365 bytes for one, deflate 1032.
+const MOST_FROM_A_BYTE: u64 = 1400;
+
+pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
+    check_options(&context.options)?;
+    let mut findings = Findings::default();
+    let mut memory = Memory::new(&context.exec);
+    if input.len() < 8 {
+        let place = Place::Byte(input.len() as u64);
+        return Err(Fault::new("E-tiff-truncated", place, "the end of the file", "a header of 8 bytes").into());
+    }
+    // Tags are read as far as they are there.
+    let mut limits = Limits::default();
+    limits.ifd_value_size = input.len();
+    memory.take(input.len(), 2)?;
+    let mut decoder = Decoder::new(Cursor::new(input)).map_err(told)?.with_limits(limits.clone());
+    let (columns, rows) = decoder.dimensions().map_err(told)?;
+    let place = Place::Whole;
+    let (columns, rows) = check_size(u64::from(columns), u64::from(rows), place, "image 0", input.len(), context)?;
+    let kind = Kind::of(&mut decoder)?;
+    let count = columns as usize * rows as usize;
+    let bytes = (count as u64).saturating_mul(kind.pixel_bytes());
+    if bytes > (input.len() as u64).saturating_mul(MOST_FROM_A_BYTE) {
+        let found = format!("{columns} × {rows} samples in {} bytes", input.len());
+        let expected = "no more than compressed data can hold";
+        return Err(Fault::new("E-tiff-claim", Place::Whole, found, expected).within("image 0").into());
+    }
+    // No strip or tile is larger than the image, but for what tiles have beyond its borders.
+    let largest = usize::try_from(bytes).unwrap_or(usize::MAX).saturating_mul(2).max(1 << 20);
+    limits.decoding_buffer_size = largest;
+    limits.intermediate_buffer_size = largest;
+    decoder = decoder.with_limits(limits);
+    let geo = Geo::read(&mut decoder);
+    let raw = samples(&mut decoder, &kind, (columns, rows), &geo, context, &mut memory, &mut findings)?;
+    if decoder.more_images() {
+        let message = "the file has several images: the first was read";
+        findings.push("W-tiff-images", Severity::Note, Place::Whole, message);
+    }
+    let shape = placed(raw, &kind, (columns, rows), &geo, context, &mut findings)?;
+    Ok(ReadShape { findings, ..ReadShape::new(shape) })
+}
+
+/// What the numbers of the file are.
+struct Kind {
+    channels: Channels,
+    bits: u8,
+    /// Unsigned whole numbers: what may be a picture.
+    unsigned: bool,
+    /// The larger the darker.
+    inverted: bool,
+}
+
+impl Kind {
+    fn of(decoder: &mut Decoder<Cursor<&[u8]>>) -> Result<Self, Box<Fault>> {
+        let color = decoder.colortype().map_err(told)?;
+        let unsigned = !matches!(decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat), Ok(Some(formats)) if formats.iter().any(|format| *format != 1));
+        let number = |tag: Tag, decoder: &mut Decoder<_>| decoder.find_tag_unsigned::<u16>(tag).ok().flatten();
+        let inverted = number(Tag::PhotometricInterpretation, decoder) == Some(0);
+        let planar = number(Tag::PlanarConfiguration, decoder) == Some(2);
+        let (channels, bits) = match color {
+            ColorType::Gray(bits) => (Channels::Grey, bits),
+            ColorType::Multiband { bit_depth, num_samples: 2 } | ColorType::GrayA(bit_depth) => {
+                (Channels::GreyAlpha, bit_depth)
+            }
+            ColorType::RGB(bits) => (Channels::Rgb, bits),
+            ColorType::RGBA(bits) => (Channels::Rgba, bits),
+            other => {
+                let fault = Fault::new(
+                    "E-tiff-feature",
+                    Place::Whole,
+                    format!("{other:?}"),
+                    "one channel, or red, green and blue",
+                );
+                return Err(fault.category(Category::Unsupported));
+            }
+        };
+        let several = channels != Channels::Grey;
+        let whole = matches!(bits, 8 | 16) || (!several && matches!(bits, 32 | 64));
+        if !whole || (several && (planar || !unsigned)) || (inverted && (!unsigned || several || bits > 16)) {
+            let kind = if unsigned { "whole numbers" } else { "signed or floating numbers" };
+            let mut found = format!("{} channels of {kind} of {bits} bits", channels.count());
+            found += if planar { ", in planes" } else { "" };
+            found += if inverted { ", of which 0 is white" } else { "" };
+            let fault =
+                Fault::new("E-tiff-feature", Place::Whole, found, "one channel, or grey or colours side by side");
+            return Err(fault.category(Category::Unsupported));
+        }
+        Ok(Self { channels, bits, unsigned, inverted })
+    }
+
+    fn pixel_bytes(&self) -> u64 {
+        self.channels.count() as u64 * u64::from(self.bits) / 8
+    }
+
+    /// Whether samples are grey or colours, rather than heights as they are.
+    fn is_picture(&self, geo: &Geo) -> bool {
+        self.channels != Channels::Grey || (self.unsigned && self.bits <= 16 && !geo.is_said())
+    }
+
+    fn full(&self) -> u32 {
+        if self.bits == 8 { 255 } else { 65535 }
+    }
+}
+
+/// The number of each pixel, row by row; not a number for holes.
+fn samples(
+    decoder: &mut Decoder<Cursor<&[u8]>>,
+    kind: &Kind,
+    (columns, rows): (u32, u32),
+    geo: &Geo,
+    context: &ReadContext,
+    memory: &mut Memory<'_>,
+    findings: &mut Findings,
+) -> Result<Vec<f64>, ReadError> {
+    let mut all = room(columns as usize * rows as usize, memory)?;
+    all.resize(columns as usize * rows as usize, f64::NAN);
+    let mut pixels = Pixels::try_new(context.options.encoding, kind.channels, kind.full(), columns)?;
+    let tiles = decoder.get_chunk_type() == ChunkType::Tile;
+    let count = if tiles { decoder.tile_count() } else { decoder.strip_count() }.map_err(told)?;
+    let (wide, high) = decoder.chunk_dimensions();
+    let across = if tiles { columns.div_ceil(wide.max(1)) } else { 1 };
+    // One strip or tile at a time, before and after it is unpacked.
+    let _chunk = context.exec.reserve(2 * u64::from(wide) * u64::from(high.min(rows)) * kind.pixel_bytes())?;
+    for chunk in 0..count {
+        context.exec.check()?;
+        context.exec.progress(f64::from(chunk) / f64::from(count));
+        let (left, top) = (u64::from(chunk % across) * u64::from(wide), u64::from(chunk / across) * u64::from(high));
+        if top >= u64::from(rows) {
+            break;
+        }
+        let (width, height) = decoder.chunk_data_dimensions(chunk);
+        let read = decoder.read_chunk(chunk).map_err(|error| {
+            told(error).within(format!("image 0, {} {chunk}", if tiles { "tile" } else { "strip" }))
+        })?;
+        let mut place = |row: usize, column: usize, value: f64| {
+            let (row, column) = (top as usize + row, left as usize + column);
+            if column < columns as usize
+                && let Some(slot) = all.get_mut(row * columns as usize + column)
+            {
+                *slot = value;
+            }
+        };
+        let (width, height) = (width as usize, height as usize);
+        if kind.channels == Channels::Grey {
+            for (at, value) in values(&read, geo.no_data).take(width * height).enumerate() {
+                place(at / width.max(1), at % width.max(1), value);
+            }
+        } else {
+            let channels = kind.channels.count();
+            let mut pixel = [0u32; 4];
+            let mut channel = 0;
+            for (at, value) in values(&read, None).take(width * height * channels).enumerate() {
+                pixel[channel] = value as u32;
+                channel += 1;
+                if channel == channels {
+                    channel = 0;
+                    let at = at / channels;
+                    place(at / width.max(1), at % width.max(1), pixels.height(&pixel[..channels])?);
+                }
+            }
+        }
+    }
+    pixels.finish(findings);
+    Ok(all)
+}
+
+/// The numbers of a chunk as doubles, those without data as holes. Whole numbers beyond 2^53 are rounded.
+fn values(read: &DecodingResult, no_data: Option<f64>) -> Box<dyn Iterator<Item = f64> + '_> {
+    let or_hole = move |value: f64| if Some(value) == no_data { f64::NAN } else { value };
+    match read {
+        DecodingResult::U8(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(*value)))),
+        DecodingResult::U16(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(*value)))),
+        DecodingResult::U32(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(*value)))),
+        DecodingResult::U64(values) => Box::new(values.iter().map(move |value| or_hole(*value as f64))),
+        DecodingResult::I8(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(*value)))),
+        DecodingResult::I16(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(*value)))),
+        DecodingResult::I32(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(*value)))),
+        DecodingResult::I64(values) => Box::new(values.iter().map(move |value| or_hole(*value as f64))),
+        DecodingResult::F16(values) => Box::new(values.iter().map(move |value| or_hole(f64::from(f32::from(*value))))),
+        DecodingResult::F32(values) => {
+            // The tag is in decimals: the number meant is the nearest that samples can be.
+            let no_data = no_data.map(|value| value as f32);
+            Box::new(values.iter().map(move |value| if Some(*value) == no_data { f64::NAN } else { f64::from(*value) }))
+        }
+        DecodingResult::F64(values) => Box::new(values.iter().map(move |value| or_hole(*value))),
+    }
+}
+
+fn placed(
+    mut raw: Vec<f64>,
+    kind: &Kind,
+    (columns, rows): (u32, u32),
+    geo: &Geo,
+    context: &ReadContext,
+    findings: &mut Findings,
+) -> Result<shapeloom_shape::Shape, ReadError> {
+    let options = &context.options;
+    if let Some(odd) = geo.odd {
+        let message = format!("the tags of GeoTIFF say {odd}: they were passed over");
+        findings.push("W-tiff-grid", Severity::Warning, Place::Whole, message);
+    }
+    let known = geo.spacing.filter(|_| options.spacing == 0.0);
+    let encoded = options.encoding != HeightEncoding::Grey;
+    let picture = kind.is_picture(geo) || (kind.unsigned && kind.bits <= 16 && options.height != 0.0);
+    let spacing = if picture && !encoded {
+        let full = f64::from(kind.full());
+        let distance = known.map(DVec2::max_element);
+        let (height, distance) = picture_scale(full, columns, rows, distance, context, findings);
+        raw.iter_mut().for_each(|value| *value = part_of(*value, full, height));
+        known.unwrap_or(DVec2::splat(distance))
+    } else {
+        no_height(context, if encoded { "colours that encode metres" } else { "samples that are heights" })?;
+        if kind.inverted {
+            let fault = Fault::new("E-tiff-feature", Place::Whole, "heights of which 0 is white", "0 as the lowest");
+            return Err(fault.category(Category::Unsupported).into());
+        }
+        known.unwrap_or_else(|| DVec2::splat(guess_spacing(context, findings)))
+    };
+    if geo.degrees {
+        let message = format!("places are in degrees: {DEGREES}");
+        findings.push("W-heights-degrees", Severity::Warning, Place::Whole, message);
+    }
+    let corner = geo.north_west.filter(|_| known.is_some());
+    let south_west = corner.map_or(DVec2::ZERO, |corner| {
+        let half = if geo.points { DVec2::ZERO } else { DVec2::new(spacing.x, -spacing.y) / 2.0 };
+        corner + half - DVec2::new(0.0, f64::from(rows - 1) * spacing.y)
+    });
+    let grid = NorthFirst { columns, rows, spacing, south_west, heights: raw };
+    let mut shape = shape_of(grid.into_field(context, findings)?);
+    shape.units = (geo.meters && known.is_some()).then_some(Units::METERS);
+    Ok(shape)
+}
+
+fn told(error: TiffError) -> Box<Fault> {
+    let place = Place::Whole;
+    let fault = match error {
+        TiffError::FormatError(error) => Fault::new("E-tiff-data", place, error.to_string(), "a sound TIFF file"),
+        TiffError::UnsupportedError(error) => {
+            let fault = Fault::new("E-tiff-feature", place, error.to_string(), "a kind of TIFF that is read");
+            fault.category(Category::Unsupported)
+        }
+        TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            Fault::new("E-tiff-truncated", place, "the end of the data", "all strips and tags")
+        }
+        TiffError::IoError(error) => Fault::new("E-tiff-data", place, error.to_string(), "sound compressed data"),
+        TiffError::LimitsExceeded | TiffError::IntSizeError => {
+            let fault = Fault::new("E-tiff-limit", place, "parts larger than the image", "strips and tiles within it");
+            fault.category(Category::OverLimit)
+        }
+        TiffError::UsageError(error) => Fault::new("E-tiff-data", place, error.to_string(), "a sound TIFF file"),
+    };
+    fault.within("image 0")
+}
