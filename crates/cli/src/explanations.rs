@@ -106,6 +106,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "Edges or loops cross, and crossings=refuse asks for that to be an error. crossings=split cuts them where they cross.",
     ),
     ("E-plane-edge", "An edge could not be put into a triangulation. Please report the shape."),
+    (
+        "E-plane-vertex",
+        "A vertex could not be put between edges that cross or nearly coincide: the library that keeps the triangulation found no place for it. Please report the input; points moved apart or fewer edges will help until then.",
+    ),
     ("E-ray-direction", "A ray has a direction without a length, or coordinates that are not finite."),
     ("E-render-count", "There are more triangles or positions in a picture than 32-bit ids can tell apart."),
     ("E-render-empty", "There is no triangle to draw."),

@@ -7,6 +7,7 @@ use spade::Triangulation as _;
 use spade::handles::FixedVertexHandle;
 
 use super::error::PlaneError;
+use super::location::locate;
 use super::scale::flushed;
 use super::triangulation::{Cdt, Mark, Triangulation, insert_near, position};
 
@@ -146,7 +147,7 @@ fn put(
     }
     let at = flushed(meeting_point([a, b], [u, v]));
     // A third edge on which the point comes to lie exactly is split there too.
-    let third = match cdt.locate_with_hint(spade::Point2::new(at.x, at.y), others_ends[0]) {
+    let third = match locate(cdt, at, others_ends[0]) {
         spade::PositionInTriangulation::OnEdge(edge) if cdt.is_constraint_edge(edge.as_undirected()) => {
             Some(release(cdt, edge.as_undirected(), done))
         }

@@ -21,6 +21,11 @@ pub enum PlaneError {
         /// The edge.
         edge: u64,
     },
+    /// A vertex that could not be put between the edges.
+    Vertex {
+        /// The vertex of the triangulation that it lies near.
+        near: u64,
+    },
 }
 
 impl PlaneError {
@@ -29,6 +34,7 @@ impl PlaneError {
         match *self {
             Self::Crossing { kind, edges, .. } => Place::Pair { kind, indices: edges },
             Self::Edge { edge } => Place::element("edge", edge),
+            Self::Vertex { near } => Place::element("vertex", near),
         }
     }
 }
@@ -40,6 +46,7 @@ impl fmt::Display for PlaneError {
             Self::Crossing { count, .. } => {
                 write!(f, "{place}: found {count} crossings, this the first, expected none")
             }
+            Self::Vertex { .. } => write!(f, "{place}: found no way to put another vertex beside it between the edges"),
             Self::Edge { .. } => write!(f, "{place}: found no way to put it into the triangulation"),
         }
     }
@@ -52,13 +59,14 @@ impl Diagnostic for PlaneError {
         match self {
             Self::Crossing { .. } => "E-plane-crossing",
             Self::Edge { .. } => "E-plane-edge",
+            Self::Vertex { .. } => "E-plane-vertex",
         }
     }
 
     fn category(&self) -> Category {
         match self {
             Self::Crossing { .. } => Category::Malformed,
-            Self::Edge { .. } => Category::Failed,
+            Self::Edge { .. } | Self::Vertex { .. } => Category::Failed,
         }
     }
 

@@ -1,10 +1,11 @@
 //! What new vertices are made of.
 
 use shapeloom_core::glam::DVec2;
+use spade::Triangulation as _;
 use spade::handles::FixedVertexHandle;
-use spade::{Point2, PositionInTriangulation, Triangulation as _};
 
 use super::constraints::Crossing;
+use super::location::{locate, vertices_around};
 use super::triangulation::{Cdt, Triangulation, position};
 
 /// A vertex as source points with weights that add up to 1.
@@ -50,29 +51,20 @@ fn part_of_segment([a, b]: [DVec2; 2], at: DVec2) -> f64 {
     if part.is_finite() { part.clamp(0.0, 1.0) } else { 0.5 }
 }
 
-/// What a place is made of in a triangulation: the corners of the triangle that it lies in by barycentric coordinates.
+/// What a place is made of in a triangulation in a box: the corners of the triangle that it lies in by barycentric
+/// coordinates. The box's corners are made of nothing: a place at the hull that is rounded outwards has the hull edge's ends.
 /// It is looked for from the vertex `near`.
 pub(crate) fn at(cdt: &Cdt, mixtures: &[Mixture], place: DVec2, near: FixedVertexHandle) -> Mixture {
-    let along = |ends: [FixedVertexHandle; 2]| {
-        let part = part_of_segment(ends.map(|end| position(cdt, end)), place);
-        vec![(ends[0], 1.0 - part), (ends[1], part)]
-    };
-    let parts = match cdt.locate_with_hint(Point2::new(place.x, place.y), near) {
-        PositionInTriangulation::OnVertex(vertex) => vec![(vertex, 1.0)],
-        PositionInTriangulation::OnEdge(edge) | PositionInTriangulation::OutsideOfConvexHull(edge) => {
-            along(cdt.directed_edge(edge).vertices().map(|vertex| vertex.fix()))
+    let corners = vertices_around(cdt, locate(cdt, place, near));
+    let own: Vec<_> = corners.into_iter().filter(|corner| !mixtures[corner.index()].is_empty()).collect();
+    let parts = match own[..] {
+        [a, b, c] => in_triangle([a, b, c], [a, b, c].map(|corner| position(cdt, corner) - place)),
+        [a, b, ..] => {
+            let part = part_of_segment([a, b].map(|end| position(cdt, end)), place);
+            vec![(a, 1.0 - part), (b, part)]
         }
-        PositionInTriangulation::OnFace(face) => {
-            let corners = cdt.face(face).vertices().map(|vertex| vertex.fix());
-            let [a, b, c] = corners.map(|corner| position(cdt, corner) - place);
-            let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)].map(|area| area.max(0.0));
-            let total: f64 = areas.iter().sum();
-            match total > 0.0 {
-                true => corners.into_iter().zip(areas.map(|area| area / total)).collect(),
-                false => along([corners[0], corners[1]]),
-            }
-        }
-        PositionInTriangulation::NoTriangulation => Vec::new(),
+        [only] => vec![(only, 1.0)],
+        [] => vec![(near, 1.0)],
     };
     let mut mixed: Mixture = Vec::new();
     for (vertex, share) in parts {
@@ -84,4 +76,14 @@ pub(crate) fn at(cdt: &Cdt, mixtures: &[Mixture], place: DVec2, near: FixedVerte
         }
     }
     mixed
+}
+
+/// Barycentric coordinates of a place, from which the corners of a triangle around it lie so far.
+fn in_triangle(corners: [FixedVertexHandle; 3], [a, b, c]: [DVec2; 3]) -> Vec<(FixedVertexHandle, f64)> {
+    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)].map(|area| area.max(0.0));
+    let total: f64 = areas.iter().sum();
+    match total > 0.0 {
+        true => corners.into_iter().zip(areas.map(|area| area / total)).collect(),
+        false => vec![(corners[0], 1.0)],
+    }
 }

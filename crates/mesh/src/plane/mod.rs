@@ -14,6 +14,7 @@ mod constraints;
 mod delaunay_triangulation;
 mod error;
 mod inside;
+mod location;
 mod mixtures;
 mod order;
 mod planar_region;

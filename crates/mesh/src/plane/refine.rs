@@ -7,12 +7,13 @@ use shapeloom_core::glam::DVec2;
 use shapeloom_core::predicates::{in_circle, orient2d};
 use shapeloom_core::{ConvertError, Exec, Reservation};
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
-use spade::{Point2, PositionInTriangulation, Triangulation as _};
+use spade::{PositionInTriangulation, Triangulation as _};
 
 use super::error::PlaneError;
 use super::inside::{Edge, inside};
+use super::location::locate;
 use super::scale::{exponent_of, flushed};
-use super::triangulation::{Cdt, Mark, Triangulation, insert, insert_near, position};
+use super::triangulation::{Cdt, Mark, Triangulation, insert_near, position};
 
 /// What is asked of the triangles.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +140,7 @@ impl<'a> Refinement<'a> {
         let corners: [DVec2; BOX] =
             [low - far, DVec2::new(high.x + far, low.y - far), high + far, DVec2::new(low.x - far, high.y + far)];
         for corner in corners {
-            insert(cdt, corner)?;
+            insert_near(cdt, corner, FixedVertexHandle::from_index(0))?;
         }
         let pieces = (0..segments.len() as u32).map(|segment| Piece { segment, inside: [false; 2] }).collect();
         let is_acute = (0..before).map(|vertex| is_acute(cdt, FixedVertexHandle::from_index(vertex))).collect();
@@ -443,7 +444,7 @@ impl<'a> Refinement<'a> {
             return Some((hint, vec![edge]));
         }
         let mut cavity = Vec::new();
-        match self.cdt.locate_with_hint(Point2::new(center.x, center.y), hint) {
+        match locate(self.cdt, center, hint) {
             PositionInTriangulation::OnFace(face) => cavity.push(face),
             PositionInTriangulation::OnEdge(edge) => {
                 let edge = self.cdt.directed_edge(edge);

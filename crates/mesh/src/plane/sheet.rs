@@ -225,13 +225,14 @@ impl Sheet<'_> {
         }
         let before = triangulation.cdt.num_vertices();
         let _memory = exec.reserve(Triangulation::bytes(before))?;
-        let unrefined = triangulation.cdt.clone();
         let mut mixtures = mixtures::of_vertices(triangulation, self.edges, &constraints.crossings);
         let sine = angle.to_radians().sin();
         let side = if area == 0.0 { f64::INFINITY } else { triangulation.scale.length_there(area.sqrt()) };
         let wanted = Wanted { sine_squared: sine * sine, side, most, split_edges };
         let scale = triangulation.scale;
         let mut refinement = Refinement::prepare(triangulation, self.kept == Kept::Hull, wanted, exec)?;
+        // In its box, outside of which nothing is looked for.
+        let unrefined = refinement.cdt().clone();
         let reached = refinement.run(exec)?;
         let is_inside = refinement.inside(exec)?;
         let cdt = refinement.cdt();

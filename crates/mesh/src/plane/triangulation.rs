@@ -1,11 +1,15 @@
 //! The Delaunay triangulation of points, on spade.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use shapeloom_core::glam::DVec2;
 use shapeloom_core::predicates::orient2d;
 use shapeloom_core::{ConvertError, Exec};
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation as _};
 
+use super::error::PlaneError;
+use super::location::{locate, vertices_around};
 use super::order::insertion_order;
 use super::scale::Scale;
 use crate::MeshError;
@@ -92,15 +96,30 @@ impl Triangulation {
     }
 }
 
-/// Inserts a position on the triangulation's own scale; one that is there already gives its vertex. It is looked for from
-/// where the last one was inserted.
-pub(crate) fn insert(cdt: &mut Cdt, at: DVec2) -> Result<FixedVertexHandle, MeshError> {
+/// Inserts a position on the triangulation's own scale, where no edge must stay; one that is there already gives its vertex. It is
+/// looked for from where the last one was inserted.
+fn insert(cdt: &mut Cdt, at: DVec2) -> Result<FixedVertexHandle, MeshError> {
     cdt.insert(Point2::new(at.x, at.y)).map_err(|_| REFUSED)
 }
 
-/// The same, looked for from a vertex.
-pub(crate) fn insert_near(cdt: &mut Cdt, at: DVec2, near: FixedVertexHandle) -> Result<FixedVertexHandle, MeshError> {
-    cdt.insert_with_hint(Point2::new(at.x, at.y), near).map_err(|_| REFUSED)
+/// The same where edges must stay, looked for from a vertex.
+///
+/// spade looks for it too, in a walk that may go round in a circle among edges that must stay, and then panics. From the
+/// nearest corner of the triangle around it the walk is hardly more than a turn; should it fail all the same, that becomes an
+/// error.
+pub(crate) fn insert_near(
+    cdt: &mut Cdt,
+    at: DVec2,
+    near: FixedVertexHandle,
+) -> Result<FixedVertexHandle, ConvertError> {
+    let around = vertices_around(cdt, locate(cdt, at, near)).into_iter();
+    let distance = |&vertex: &FixedVertexHandle| position(cdt, vertex).distance_squared(at);
+    let nearest = around.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(near);
+    let place = Point2::new(at.x, at.y);
+    match catch_unwind(AssertUnwindSafe(|| cdt.insert_with_hint(place, nearest))) {
+        Ok(inserted) => Ok(inserted.map_err(|_| REFUSED)?),
+        Err(_) => Err(PlaneError::Vertex { near: nearest.index() as u64 }.into()),
+    }
 }
 
 const REFUSED: MeshError = MeshError::NotFinite { kind: "vertex of the triangulation", index: 0 };

@@ -9,7 +9,7 @@ use crate::{
     Column, ConstrainedDelaunay, Crossings, Domain, GeometricGraph, KeptTriangles, PlaneError, TriMesh, Values,
 };
 
-fn graph(points: &[DVec2], edges: &[[u32; 2]]) -> GeometricGraph {
+pub(super) fn graph(points: &[DVec2], edges: &[[u32; 2]]) -> GeometricGraph {
     GeometricGraph::try_new(raised(points), edges.to_vec()).unwrap()
 }
 

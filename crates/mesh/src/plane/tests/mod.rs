@@ -2,6 +2,7 @@
 
 mod constrained;
 mod cramped;
+mod located;
 mod refined;
 mod regions;
 mod scattered;
