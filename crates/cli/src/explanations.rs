@@ -151,7 +151,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-structures-mix",
-        "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative. Example: --mix VV=1e6,VF=2e5,updates=100.",
+        "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative, and at least one query or update is asked. Example: --mix VV=1e6,VF=2e5,updates=100.",
     ),
     (
         "E-tessellation-rounding",
