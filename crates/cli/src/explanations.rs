@@ -241,7 +241,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "W-height-stray",
-        "Some samples of a height field have a height, but each cell around them touches a hole and is left out: no triangle has these samples, and the report gives no deviation, as nothing stands for them.",
+        "Some samples of a height field have a height, but each cell around them touches a hole and is left out: no triangle has these samples. The bound of the report is for the surface over whole cells and holds; where there is no whole cell at all the report gives no deviation, as nothing stands for the samples.",
     ),
     (
         "W-height-tolerance",

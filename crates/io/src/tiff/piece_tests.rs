@@ -99,7 +99,12 @@ fn generous_numbers_are_read() {
 #[test]
 fn compressed_strips_are_checked_too() {
     for compression in [Compression::Lzw, Compression::Deflate(Default::default()), Compression::Packbits] {
-        let whole = encoded::<Gray16>(&[1, 2, 3, 4, 5, 6], compression, &[], None);
+        let mut whole = Cursor::new(Vec::new());
+        let mut encoder = TiffEncoder::new(&mut whole).unwrap().with_compression(compression);
+        let mut image = encoder.new_image::<Gray16>(3, 2).unwrap();
+        image.rows_per_strip(2).unwrap();
+        image.write_data(&[1, 2, 3, 4, 5, 6]).unwrap();
+        let whole = whole.into_inner();
         let length = number(&whole, LENGTHS);
         for (tag, value) in [(LENGTHS, 0), (OFFSETS, 0), (OFFSETS, whole.len() as u32), (ROWS, 1)] {
             let error = white(&patched(&whole, tag, value)).unwrap_err();
