@@ -112,3 +112,39 @@ fn damaged_elevation_models_are_refused_with_a_place() {
         assert!([0, 3, 4, 7].contains(&outcome.code), "{} {}", outcome.code, outcome.err);
     }
 }
+
+/// What lies about its strips is malformed; what is merely of another kind is not. Numbers stay short.
+#[test]
+fn lies_kinds_and_options_have_their_exit_codes() {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let picture =
+        image::DynamicImage::ImageLuma16(image::ImageBuffer::from_fn(4, 3, |x, y| image::Luma([(x + y) as u16])));
+    picture.write_to(&mut bytes, image::ImageFormat::Tiff).expect("a picture");
+    let whole = bytes.into_inner();
+    let start = u32::from_le_bytes([whole[4], whole[5], whole[6], whole[7]]) as usize;
+    let patched = |tag: u16, value: u32| {
+        let mut bytes = whole.clone();
+        let at = (start + 2..).step_by(12).find(|at| bytes[*at..*at + 2] == tag.to_le_bytes()).expect("the tag");
+        bytes[at + 2..at + 8].copy_from_slice(&[4, 0, 1, 0, 0, 0]);
+        bytes[at + 8..at + 12].copy_from_slice(&value.to_le_bytes());
+        run_on(&bytes, &["info", "-", "--from", "tiff", "--set", "height=1"])
+    };
+    for (tag, value, code, word) in [
+        (278, 1, 3, "RowsPerStrip"),
+        (279, 1, 3, "StripByteCounts"),
+        (273, 0, 3, "StripOffsets"),
+        (273, 1 << 30, 3, "StripOffsets"),
+        (258, 33, 4, "33 bits"),
+        (278, u32::MAX, 0, ""),
+    ] {
+        let outcome = patched(tag, value);
+        assert!(outcome.code == code && outcome.err.contains(word), "{tag} {value}: {} {}", outcome.code, outcome.err);
+    }
+    let high = run_on(&whole, &["info", "-", "--from", "tiff", "--set", "height=1e300", "--set", "exaggeration=1e300"]);
+    assert!(high.code == 3 && high.err.lines().all(|line| line.len() < 200), "{}", high.err);
+    let high = run_on(&whole, &["info", "-", "--from", "tiff", "--set", "height=1e300"]);
+    let words = high.err.clone() + &String::from_utf8_lossy(&high.out);
+    assert!(!words.contains(&"0".repeat(60)), "{words}");
+    let typo = run_on(&whole, &["info", "-", "--from", "tiff", "--set", "encoding=typo"]);
+    assert!(typo.code == 2 && typo.err.contains("mapbox") && typo.err.contains("to read tiff"), "{}", typo.err);
+}

@@ -64,3 +64,45 @@ fn what_a_structure_cannot_hold_is_named() {
     let wrong = run(&["structures", &data("teapot.bpt"), "--mix", "VX=3"]);
     assert!(wrong.code == 2 && wrong.err.contains("E-structures-mix"), "{}", wrong.err);
 }
+
+/// A structure that does not fit is named with what it needs; where nothing fits, that is the failure.
+#[test]
+fn memory_that_is_short_is_told_for_each_structure_or_for_all() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("grid.ply").display().to_string();
+    let made = run(&["make", "grid", &path, "--set", "columns=120", "--set", "rows=120"]);
+    assert_eq!(made.code, 0, "{}", made.err);
+    let (mut some, mut none) = (0, 0);
+    for kilobytes in [1, 64, 256, 512, 1024, 2048, 3072, 4096, 6144, 8192, 16384, 65536] {
+        let memory = (kilobytes * 1024).to_string();
+        let outcome = run(&["structures", &path, "--max-memory", &memory, "--json"]);
+        let object = outcome.json();
+        if outcome.code == 7 {
+            none += 1;
+            assert!(some == 0 && outcome.err.contains("help:"), "{kilobytes}: {}", outcome.err);
+            continue;
+        }
+        assert_eq!(outcome.code, 0, "{kilobytes}: {}", outcome.err);
+        let structures = object["structures"].as_array().expect("a list");
+        assert!(structures.iter().any(|one| one["holds"] == true), "{kilobytes}");
+        let short = |one: &&serde_json::Value| {
+            one["why"].as_str().or(one["why_not_in_place"].as_str()).is_some_and(|why| why.contains("memory budget"))
+        };
+        some += usize::from(structures.iter().any(|one| short(&one)));
+    }
+    assert!(some > 0 && none > 0, "{some} {none}");
+}
+
+#[test]
+fn mixes_without_work_and_huge_ones_are_short_and_clear() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = torus(&folder);
+    for empty in ["", "queries=0", "size=2"] {
+        let outcome = run(&["structures", &path, "--mix", empty]);
+        assert!(outcome.code == 2 && outcome.err.contains("no query and no update"), "{empty}: {}", outcome.err);
+    }
+    let outcome = run(&["structures", &path, "--mix", "queries=1e300"]);
+    let words = String::from_utf8_lossy(&outcome.out).into_owned();
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    assert!(words.lines().all(|line| line.len() < 200), "{words}");
+}

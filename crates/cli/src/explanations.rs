@@ -155,7 +155,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-structures-mix",
-        "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative. Example: --mix VV=1e6,VF=2e5,updates=100.",
+        "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative, and at least one query or update is asked. Example: --mix VV=1e6,VF=2e5,updates=100.",
     ),
     (
         "E-tessellation-rounding",
@@ -245,7 +245,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "W-height-stray",
-        "Some samples of a height field have a height, but each cell around them touches a hole and is left out: no triangle has these samples, and the report gives no deviation, as nothing stands for them.",
+        "Some samples of a height field have a height, but each cell around them touches a hole and is left out: no triangle has these samples. The bound of the report is for the surface over whole cells and holds; where there is no whole cell at all the report gives no deviation, as nothing stands for the samples.",
     ),
     (
         "W-height-tolerance",

@@ -12,6 +12,8 @@ pub(crate) struct Settings {
     /// Those that reading and some converter have: they are reading's where the input's format heeds them.
     either: Vec<(String, String)>,
     write: Vec<(String, String)>,
+    /// Those that reading and writing have, with a value that neither has.
+    wrong: Vec<(String, String)>,
     others: Vec<(String, String)>,
     /// Whether they are for several inputs, each of which heeds what means something for it.
     shared: bool,
@@ -25,8 +27,14 @@ impl Settings {
     /// A key that reading or writing has is theirs, with or without `read.` or `write.` before it. One that both have is
     /// that of the one which knows the value.
     pub(crate) fn sort(settings: &[(String, String)]) -> Self {
-        let mut sorted =
-            Self { read: Vec::new(), either: Vec::new(), write: Vec::new(), others: Vec::new(), shared: false };
+        let mut sorted = Self {
+            read: Vec::new(),
+            either: Vec::new(),
+            write: Vec::new(),
+            wrong: Vec::new(),
+            others: Vec::new(),
+            shared: false,
+        };
         for (key, value) in settings {
             let setting = |key: &str| (key.to_owned(), value.clone());
             if let Some(key) = key.strip_prefix("read.") {
@@ -39,7 +47,8 @@ impl Settings {
                 let converters = registry().iter().any(|converter| has(&converter.specs(), key));
                 if converters { sorted.either.push(setting(key)) } else { sorted.read.push(setting(key)) }
             } else if has(&WriteOptions::specs(), key) {
-                sorted.write.push(setting(key));
+                let both = has(&ReadOptions::specs(), key) && WriteOptions::new().set(key, value).is_err();
+                if both { sorted.wrong.push(setting(key)) } else { sorted.write.push(setting(key)) }
             } else {
                 sorted.others.push(setting(key));
             }
@@ -103,6 +112,9 @@ impl Settings {
         for (key, value) in self.either.iter().filter(|(key, _)| format.read_options.contains(&key.as_str())) {
             options.set(key, value)?;
         }
+        if let Some((key, value)) = self.wrong.first() {
+            return Err(wrong(key, value, format));
+        }
         self.others.iter().try_for_each(|(key, _)| check_spelling(key))?;
         Ok(options)
     }
@@ -110,7 +122,7 @@ impl Settings {
     /// How an output of this format is written.
     pub(crate) fn writing(&self, format: &Format) -> Result<WriteOptions, Failure> {
         let mut options = WriteOptions::new();
-        for (key, value) in &self.write {
+        for (key, value) in self.write.iter().chain(&self.wrong) {
             options.set(key, value)?;
             heeded(key, format, |format| format.write_options)?;
         }
@@ -127,6 +139,22 @@ impl Settings {
             None => Ok(()),
         }
     }
+}
+
+/// A value that an option has neither for reading nor for writing, where an input of this format is read.
+fn wrong(key: &str, value: &str, format: &Format) -> Failure {
+    let kind = |specs: Vec<OptionSpec>| {
+        specs.iter().find(|spec| spec.name == key).map_or_else(String::new, |spec| spec.kind.to_string())
+    };
+    let (read, write) = (kind(ReadOptions::specs()), kind(WriteOptions::specs()));
+    let reading = if format.read_options.contains(&key) {
+        format!("{read} to read {}, or {write} to write", format.id)
+    } else {
+        let others: Vec<&str> =
+            FORMATS.iter().filter(|format| format.read_options.contains(&key)).map(|format| format.id).collect();
+        format!("{write} to write, or {read} to read {}", others.join(", "))
+    };
+    Failure::usage("E-option-text", format!("option {key}: found \"{value}\", expected {reading}"))
 }
 
 /// Refuses an option that means nothing for a format.
@@ -203,6 +231,25 @@ mod tests {
         ] {
             assert_eq!((distance(a, b), distance(b, a)), (changes, changes), "{a} {b}");
         }
+    }
+
+    #[test]
+    fn a_value_that_neither_has_is_told_with_those_of_reading() {
+        let sorted = Settings::sort(&settings(&[("encoding", "typo")]));
+        let (png, ply) = (format_by_id("png").unwrap(), format_by_id("ply").unwrap());
+        let told = |format| format!("{:?}", sorted.reading(format, false).unwrap_err());
+        let read = told(png);
+        assert!(read.contains("E-option-text") && read.contains("typo"), "{read}");
+        assert!(
+            ["grey", "mapbox", "terrarium", "to read png", "ascii"].iter().all(|word| read.contains(word)),
+            "{read}"
+        );
+        // Meshes have none to read.
+        let other = told(ply);
+        assert!(other.find("ascii") < other.find("mapbox") && other.contains("to read png"), "{other}");
+        assert_eq!(sorted.writing(ply).unwrap_err().exit_code(), 2);
+        let prefixed = Settings::sort(&settings(&[("read.encoding", "typo")]));
+        assert!(!format!("{:?}", prefixed.reading(png, false).unwrap_err()).contains("ascii"));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use shapeloom_core::{Exec, Stop};
+use shapeloom_core::{Exec, OverBudget, Stop};
 use shapeloom_mesh::structures::{
     Cost, Incidence, IndexedPolygons, Query, StructureError, StructureKind, Update, VertexId,
 };
@@ -32,6 +32,8 @@ pub(crate) struct StructureCosts {
     pub(crate) update: f64,
     /// Whether it can be changed in place, and what that costs in principle.
     pub(crate) in_place: Cost,
+    /// What did not fit where it could be changed in place but for the memory: each change makes it anew then.
+    pub(crate) no_room_for_updates: Option<OverBudget>,
 }
 
 impl StructureCosts {
@@ -63,11 +65,18 @@ impl StructureCosts {
         }
         let bytes = built.memory_bytes();
         drop(built);
-        let in_place = kind.update_cost(Update::FlipEdge);
-        let changed = if in_place == Cost::Unanswered { None } else { time_of_updates(kind, faces, exec)? };
+        let mut in_place = kind.update_cost(Update::FlipEdge);
+        let (mut changed, mut no_room_for_updates) = (None, None);
+        if in_place != Cost::Unanswered {
+            match time_of_updates(kind, faces, exec)? {
+                Ok(time) => changed = time,
+                Err(over) => (in_place, no_room_for_updates) = (Cost::Unanswered, Some(over)),
+            }
+        }
         let positions = if kind == StructureKind::TriangleSoup { faces.corners().len() } else { faces.vertex_count() };
         let bytes_in_all = bytes + 24 * positions;
-        Ok(Ok(Self { bytes, bytes_in_all, build, queries, update: changed.unwrap_or(build), in_place }))
+        let update = changed.unwrap_or(build);
+        Ok(Ok(Self { bytes, bytes_in_all, build, queries, update, in_place, no_room_for_updates }))
     }
 
     /// The time that a workload takes with the structure, its making included; the queries that it cannot answer instead.
@@ -86,12 +95,17 @@ impl StructureCosts {
 }
 
 /// The mean time of a flip, split or collapse of an edge, one after the other all over the mesh; none where no edge lets itself be
-/// changed.
-fn time_of_updates(kind: StructureKind, faces: &IndexedPolygons, exec: &Exec) -> Result<Option<f64>, Stop> {
+/// changed. The inner error says that the structure to be changed does not fit.
+fn time_of_updates(
+    kind: StructureKind,
+    faces: &IndexedPolygons,
+    exec: &Exec,
+) -> Result<Result<Option<f64>, OverBudget>, Stop> {
     let mut structure = match kind.build_for_updates(faces, exec) {
         Ok(Some(structure)) => structure,
         Err(StructureError::Stop(stop)) => return Err(stop),
-        _ => return Ok(None),
+        Err(StructureError::OverBudget(over)) => return Ok(Err(over)),
+        _ => return Ok(Ok(None)),
     };
     let sides = some_of(faces.face_count(), |face| face as u32).into_iter().filter_map(|face| {
         let corners = structure.answer(Query::FV, face).ok()?;
@@ -117,7 +131,7 @@ fn time_of_updates(kind: StructureKind, faces: &IndexedPolygons, exec: &Exec) ->
             break;
         }
     }
-    Ok((done > 0).then(|| spent.as_secs_f64() / f64::from(done)))
+    Ok(Ok((done > 0).then(|| spent.as_secs_f64() / f64::from(done))))
 }
 
 /// Elements spread evenly over all of them.

@@ -38,6 +38,16 @@ impl Workload {
                 }
             }
         }
+        let counts = || workload.queries.iter().chain([&workload.updates, &workload.size]);
+        let wrong = |found: &str, expected: &str| {
+            Failure::usage("E-structures-mix", format!("--mix {words:?}: found {found}, expected {expected}"))
+        };
+        if counts().any(|count| !count.is_finite()) {
+            return Err(wrong("numbers of one key that are beyond 1.8e308 together", "finite ones"));
+        }
+        if workload.updates == 0.0 && workload.asked().next().is_none() {
+            return Err(wrong("no query and no update", "at least one, such as queries=1e6 or updates=100"));
+        }
         Ok(workload)
     }
 
@@ -56,7 +66,14 @@ mod tests {
         let mix = Workload::parse("queries=9, VV=4,updates=2,size=0.5").unwrap();
         assert_eq!(mix.queries, [5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
         assert_eq!((mix.updates, mix.size), (2.0, 0.5));
-        assert_eq!(Workload::parse("").unwrap().asked().count(), 0);
+        assert_eq!(Workload::parse("updates=1").unwrap().asked().count(), 0);
+        // Nothing to rank by.
+        for empty in ["", " , ", "VV=0", "queries=0,updates=0", "size=1"] {
+            let error = Workload::parse(empty).unwrap_err();
+            let told = format!("{error:?}");
+            assert!(error.exit_code() == 2 && told.contains("no query and no update"), "{told}");
+        }
+        assert_eq!(Workload::parse("VV=1e308,VV=1e308").unwrap_err().exit_code(), 2);
         for wrong in ["VV", "VV=", "VV=-1", "VV=nan", "XX=3", "updates=inf", "=3"] {
             let error = Workload::parse(wrong).unwrap_err();
             assert_eq!(error.exit_code(), 2, "{wrong}");

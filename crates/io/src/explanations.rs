@@ -14,11 +14,11 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-asc-finite",
-        "A number of an ESRI ASCII grid is infinite, or larger than the largest double. With the option drop_non_finite such heights become holes.",
+        "A number of an ESRI ASCII grid is infinite, or larger than the largest double. With the option drop_non_finite (--drop-non-finite) such heights become holes; numbers of the header must be mended.",
     ),
     (
         "E-asc-header",
-        "The header of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize (or dx and dy), and perhaps NODATA_value, each followed by a number. A word is missing or not one of these.",
+        "The header of an ESRI ASCII grid has ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize (or dx and dy), and perhaps NODATA_value, each followed by a number. A word is missing or not one of these, or the file is empty.",
     ),
     (
         "E-asc-number",
@@ -129,7 +129,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-heights-finite",
-        "A height is infinite, or becomes so by the options height and exaggeration. With the option drop_non_finite such heights become holes.",
+        "A height is infinite, or becomes so when multiplied by the option exaggeration. Mend the number or choose a smaller exaggeration. With the option drop_non_finite (--drop-non-finite) heights that are infinite in the file become holes.",
     ),
     (
         "E-heights-grid",
@@ -295,14 +295,18 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-text-line", "A line is longer than the reader's limits allow. It may not be text at all."),
     (
         "E-tiff-claim",
-        "The header of a TIFF file claims more samples than compressed data of its length can hold. Nothing was allocated for them.",
+        "A TIFF file claims more samples than compressed data of its length can hold, or has a tag, strip or tile larger than the image. Nothing was allocated for them.",
     ),
     ("E-tiff-data", "A tag or the compressed data of a TIFF file is damaged or missing."),
     (
         "E-tiff-feature",
         "Heights are read from TIFF files of one channel of 8 to 64 bits, from grey with transparency and from colours of 8 or 16 bits side by side; plain or compressed by LZW, deflate or PackBits. This file is of another kind.",
     ),
-    ("E-tiff-limit", "A strip, tile or tag of a TIFF file is larger than the image that it is for."),
+    ("E-tiff-limit", "A tag of a TIFF file has more than 1 MiB: so many strips or tiles are not read."),
+    (
+        "E-tiff-strip",
+        "The tags that say where the strips or tiles of a TIFF file are, or how many rows and bytes each has, contradict each other or the file: one begins outside of the file, or has fewer bytes than its pixels need. Files with strips left out because they are empty are of this kind too. Write the file anew with another program.",
+    ),
     ("E-tiff-truncated", "A TIFF file ends before its tags or its data."),
     ("E-write-empty", "The shape has no parts, and the format has no empty files."),
     (
@@ -490,6 +494,14 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The tags that say where the samples of a TIFF file are make no grid along the axes. They were passed over.",
     ),
     ("W-tiff-images", "A TIFF file has several images, such as smaller copies of the first. The first was read."),
+    (
+        "W-tiff-nodata",
+        "The tag GDAL_NODATA of a TIFF file says which number means that there is no height, but has no number. No samples were taken as holes by it: if some should be, they stand out as spikes or pits. Mend the tag, for instance with gdal_edit -a_nodata.",
+    ),
+    (
+        "W-tiff-strip",
+        "The number of bytes of a strip or tile in a TIFF file runs past the end of the file. Its pixels were there all the same, so only what they need was read.",
+    ),
 ];
 
 /// The explanation of a code of this crate.

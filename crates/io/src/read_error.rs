@@ -156,7 +156,8 @@ fn usual_advice(code: &str) -> Option<&'static str> {
         }
         "count" | "degree" => "mend this number; it must be a whole number that agrees with what follows",
         "number" => "write decimal numbers with a point, such as -1.5e3, apart by blanks",
-        "finite" => crate::audit::DROP_ADVICE,
+        // Where leaving vertices out helps, the reader says so.
+        "finite" => "mend this number: it must be finite",
         "index" | "reference" => "mend the index, or remove the element that has it",
         "row" => "make the row complete, one row a line, or mend what the header says of it",
         "header" | "format" | "type" | "duplicate" | "property" => {
@@ -166,13 +167,15 @@ fn usual_advice(code: &str) -> Option<&'static str> {
         "version" | "extension" | "feature" | "dimension" | "mode" => {
             "export the file anew without it, or convert it with another program"
         }
-        "limit" | "elements" | "line" => "cut the file into parts, or raise the limit if it is trusted",
+        "limit" | "elements" => "cut the file into parts, or make it smaller with the program that wrote it",
+        "line" => "break the line into shorter ones, or get another copy: text has no lines of this length",
+        "strip" => "get a complete copy of the file, or write it anew with another program",
         "json" => "mend the text at this place: it is no JSON",
         "missing" | "uri" | "path" => "put the file where it is looked for, or export with everything in one file",
         "cycle" | "parents" | "depth" | "sparse" | "order" => "export the file anew: it breaks a rule of its format",
         "color" | "weight" | "mesh" | "patch" => "mend the value in the file, or export it anew",
         "checksum" | "data" => "get the file again: what it holds was damaged",
-        "size" => "use a picture of at least two columns and rows",
+        "size" => "use a picture or grid of at least two columns and two rows",
         "option" => "leave the option out, or give it a value that `shapeloom explain` allows",
         "channels" => "save the picture in grey, or say how its colours encode heights",
         "maxval" | "value" | "cell" | "grid" | "profile" | "spread" => "mend this number, or export the file anew",
@@ -211,6 +214,15 @@ mod tests {
                 let own = ["E-text-encoding", "E-obj-freeform", "E-read-format", "E-read-size"].contains(code);
                 assert!(own || usual_advice(code).is_some(), "{code}");
             }
+        }
+    }
+
+    /// No option raises a limit on elements, and readers that can leave something out say so themselves.
+    #[test]
+    fn no_advice_promises_an_option_that_does_nothing() {
+        for (code, _) in crate::EXPLANATIONS.iter().filter(|(code, _)| code.starts_with("E-")) {
+            let advice = usual_advice(code).unwrap_or_default();
+            assert!(!advice.contains("raise the limit") && !advice.contains("drop"), "{code}: {advice}");
         }
     }
 

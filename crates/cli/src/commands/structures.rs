@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 use shapeloom_convert::Job;
-use shapeloom_core::{Convert, Exec};
+use shapeloom_core::{Convert, Exec, OverBudget};
 use shapeloom_mesh::TriangulatePolygons;
 use shapeloom_mesh::structures::{
     Cost, Incidence, IndexedPolygons, IndexedTriangles, Query, StructureError, StructureKind,
@@ -45,6 +45,9 @@ pub(crate) fn run(arguments: &StructuresArguments, session: &mut Session<'_>) ->
         exec.progress(done as f64 / StructureKind::ALL.len() as f64);
         rows.push((kind, StructureCosts::measure(kind, &faces, &exec)?));
     }
+    if let Some(over) = nothing_fits(&rows) {
+        return Err(Failure::from(over).about(input.name.as_ref()));
+    }
     let ranking = Ranking::new(&rows, &workload);
     if session.globals.json {
         let object = told_as_json(&input.name, &faces, &rows, &workload, &ranking);
@@ -58,6 +61,18 @@ pub(crate) fn run(arguments: &StructuresArguments, session: &mut Session<'_>) ->
 
 /// A kind with its costs, or the reason why it cannot hold the mesh.
 type Row = (StructureKind, Result<StructureCosts, StructureError>);
+
+/// The smallest need that was not met, where no structure holds the mesh and the memory is why at least one does not.
+fn nothing_fits(rows: &[Row]) -> Option<OverBudget> {
+    let over = |row: &Row| match &row.1 {
+        Err(StructureError::OverBudget(over)) => Some(*over),
+        _ => None,
+    };
+    if rows.iter().any(|(_, row)| row.is_ok()) {
+        return None;
+    }
+    rows.iter().filter_map(over).min_by_key(|over| over.taken.saturating_add(over.wanted))
+}
 
 fn faces(mesh: &Geometry, triangles: bool, exec: &Exec) -> Result<IndexedPolygons, Failure> {
     let _memory = exec.reserve(mesh.memory_bytes() as u64)?;
@@ -149,6 +164,9 @@ fn told(
         if let Err(error) = row {
             let _ = writeln!(text, "{}: cannot hold it: {error}", kind.name());
         }
+        if let Ok(StructureCosts { no_room_for_updates: Some(over), .. }) = row {
+            let _ = writeln!(text, "{}: cannot be changed in place, but made anew: {over}", kind.name());
+        }
     }
     let _ = writeln!(text, "\nfor {} (made from indexed polygons first):", arguments.mix);
     for (rank, &(i, time, weighed)) in ranking.ranked.iter().enumerate() {
@@ -182,6 +200,9 @@ fn told_as_json(name: &str, faces: &IndexedPolygons, rows: &[Row], workload: &Wo
                 object.insert("build_s".into(), json!(costs.build));
                 object.insert("update_s".into(), json!(costs.update));
                 object.insert("updates_in_place".into(), json!(costs.in_place != Cost::Unanswered));
+                if let Some(over) = costs.no_room_for_updates {
+                    object.insert("why_not_in_place".into(), json!(over.to_string()));
+                }
                 let queries = Query::ALL.into_iter().zip(costs.queries).map(|(query, (cost, time))| {
                     let cost = match cost {
                         Cost::Local => "local",
@@ -232,5 +253,19 @@ fn seconds(time: f64) -> String {
         time if time < 1.0 => (time * 1e3, "ms"),
         time => (time, "s"),
     };
+    if value >= 1e9 {
+        return format!("{value:.1e} {unit}");
+    }
     if value < 99.95 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_short_whatever_their_size() {
+        let told = [0.0, 1.5e-9, 2e-3, 30.0, 200.0, 1e300, 1.5e308].map(seconds);
+        assert_eq!(told, ["0.0 ns", "1.5 ns", "2.0 ms", "30.0 s", "200 s", "1.0e300 s", "1.5e308 s"]);
+    }
 }

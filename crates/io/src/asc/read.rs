@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec2;
 use shapeloom_core::{Findings, Place, Severity, Words};
 
-use crate::heights::{NorthFirst, check_options, check_size, room, shape_of};
+use crate::heights::{HOLE_ADVICE, NorthFirst, check_options, check_size, room, shape_of};
 use crate::memory::Memory;
 use crate::text::{CountFault, NumberFault, Scanner, end_place, in_lines, line_place, plain_text, quoted};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
@@ -133,8 +133,12 @@ fn word_height(
     if fault != NumberFault::Syntax && context.options.drop_non_finite {
         return Ok(f64::INFINITY);
     }
-    let code = if fault == NumberFault::Syntax { "E-asc-number" } else { "E-asc-finite" };
-    Err(Fault::new(code, place, found, fault.to_string()).within(format!("row {row}, column {column}")))
+    let within = format!("row {row}, column {column}");
+    Err(if fault == NumberFault::Syntax {
+        Fault::new("E-asc-number", place, found, fault.to_string()).within(within)
+    } else {
+        Fault::new("E-asc-finite", place, found, fault.to_string()).within(within).advice(HOLE_ADVICE)
+    })
 }
 
 /// The words of the header with their values.
@@ -211,7 +215,13 @@ impl Header {
 
     fn missing(&self, what: &str, text: &[u8]) -> Box<Fault> {
         let place = if self.end >= text.len() { end_place(text) } else { Place::Byte(self.end as u64) };
-        Fault::new("E-asc-header", place, "the end of the header", what)
+        if text.iter().all(u8::is_ascii_whitespace) {
+            let fault = Fault::new("E-asc-header", place, "an empty file", format!("a header, first of all {what}"));
+            return fault.advice("get a complete copy of the file: this one has nothing in it");
+        }
+        let found = if self.end >= text.len() { "the end of the file" } else { "the end of the header" };
+        Fault::new("E-asc-header", place, found, what)
+            .advice(format!("put {what} with its number into the header, before the samples"))
     }
 
     fn count(&self, key: Key, text: &[u8]) -> Result<u64, Box<Fault>> {

@@ -150,3 +150,35 @@ fn defects_are_told_with_their_line() {
     assert_eq!((FORMAT.sniff)(GRID.as_bytes()), Sniff::Certain);
     assert_eq!((FORMAT.sniff)(b"ncols\n"), Sniff::No);
 }
+
+/// What is said of an empty file, a missing word and an infinite number is about that, and its advice helps.
+#[test]
+fn words_and_advice_fit_the_defect() {
+    let told = |text: &str| {
+        let error = asc(text).unwrap_err();
+        (error.to_string(), error.advice().unwrap())
+    };
+    for empty in ["", "\n  \n"] {
+        let (text, advice) = told(empty);
+        assert!(text.contains("found an empty file, expected a header") && advice.contains("complete copy"), "{text}");
+    }
+    let (text, advice) = told(&GRID.replace("NROWS 2\n", ""));
+    assert!(text.contains("the end of the header, expected the word nrows") && advice.contains("the word nrows"));
+    let (_, advice) = told(&GRID.replace("NROWS 2", "NROWS 1"));
+    assert!(advice.contains("grid of at least two"), "{advice}");
+    // In the header nothing can be left out; a height can become a hole, and does.
+    let (_, advice) = told(&GRID.replace("xllcorner 100", "xllcorner inf"));
+    assert!(!advice.contains("drop"), "{advice}");
+    let infinite = GRID.replace("4 -1", "inf -1");
+    assert!(told(&infinite).1.contains("--drop-non-finite"));
+    let options = crate::ReadOptions { drop_non_finite: true, ..crate::ReadOptions::new() };
+    let read =
+        |text: &str, options| crate::read(text.as_bytes(), &FORMAT, &ReadContext { options, ..ReadContext::default() });
+    assert!(read(&infinite, options).is_ok());
+    // What an option made infinite is the option's fault.
+    let options = crate::ReadOptions { exaggeration: 1e308, ..crate::ReadOptions::new() };
+    let error = read(GRID, options).unwrap_err();
+    let advice = error.advice().unwrap();
+    assert!(advice.contains("exaggeration") && !advice.contains("drop"), "{advice}");
+    assert!(error.to_string().contains("the height 2 times the option exaggeration = 1e308"), "{error}");
+}

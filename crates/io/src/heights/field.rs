@@ -1,11 +1,15 @@
 //! Rows of samples, the northern one first, made a height field.
 
 use shapeloom_core::glam::{DVec2, DVec3};
-use shapeloom_core::{Affine, Category, Findings, Place, Severity};
+use shapeloom_core::{Affine, Category, Findings, Place, Severity, Words};
 use shapeloom_mesh::HeightField;
 
 use crate::memory::Memory;
 use crate::{Fault, ReadContext, ReadError};
+
+/// What to do about heights that are infinite in a file.
+pub(crate) const HOLE_ADVICE: &str =
+    "mend the height, or make such heights holes with the option drop_non_finite (--drop-non-finite)";
 
 /// Heights as files have them: row by row, the northern row first.
 pub(crate) struct NorthFirst {
@@ -32,11 +36,11 @@ impl NorthFirst {
         for (row, heights) in self.heights.chunks_mut(columns.max(1)).enumerate() {
             context.exec.check()?;
             for (column, height) in heights.iter_mut().enumerate() {
+                let own = *height;
                 *height *= context.options.exaggeration;
                 if height.is_infinite() {
                     if !context.options.drop_non_finite {
-                        let found = "a height that is infinite or beyond 1.8e308";
-                        let fault = Fault::new("E-heights-finite", Place::Whole, found, "finite heights");
+                        let fault = infinite(own, context.options.exaggeration);
                         return Err(fault.within(format!("row {row}, column {column}")).into());
                     }
                     *height = f64::NAN;
@@ -71,6 +75,18 @@ impl NorthFirst {
             return Err(grid_fault(found.into()).into());
         }
         Ok(field.placed(placement))
+    }
+}
+
+/// A height that is infinite in the file, or becomes so where heights are multiplied.
+#[cold]
+fn infinite(own: f64, exaggeration: f64) -> Box<Fault> {
+    let fault = |found: String| Fault::new("E-heights-finite", Place::Whole, found, "finite heights");
+    if own.is_infinite() {
+        fault("a height that is infinite or beyond 1.8e308".into()).advice(HOLE_ADVICE)
+    } else {
+        fault(format!("the height {} times the option exaggeration = {}", Words(own), Words(exaggeration)))
+            .advice("choose a smaller exaggeration with --set exaggeration=...")
     }
 }
 

@@ -9,7 +9,7 @@ mod level;
 mod pixels;
 mod scale;
 
-pub(crate) use field::{NorthFirst, check_size, room};
+pub(crate) use field::{HOLE_ADVICE, NorthFirst, check_size, room};
 pub(crate) use level::Level;
 pub(crate) use pixels::{Channels, Pixels};
 pub(crate) use scale::{DEGREES, guess_spacing, no_height, part_of, picture_scale};

@@ -1,12 +1,11 @@
 //! What the tags of GeoTIFF and GDAL say.
 
-use std::io::Cursor;
-
 use shapeloom_core::glam::{DMat4, DVec2};
 use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
-use crate::text::parse_number;
+use super::source::Source;
+use crate::text::{parse_number, quoted};
 
 /// Where samples are, and what has none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +22,8 @@ pub(super) struct Geo {
     pub(super) meters: bool,
     /// The number of samples without data.
     pub(super) no_data: Option<f64>,
+    /// What the tag for that says instead of a number.
+    pub(super) no_number: Option<String>,
     /// Why places were not understood.
     pub(super) odd: Option<&'static str>,
 }
@@ -41,7 +42,7 @@ const METER: u64 = 9001;
 
 impl Geo {
     /// Reads what is there; what cannot be read is as if it were not.
-    pub(super) fn read(decoder: &mut Decoder<Cursor<&[u8]>>) -> Self {
+    pub(super) fn read(decoder: &mut Decoder<Source<'_>>) -> Self {
         let mut geo = Self::default();
         let mut numbers = |tag: Tag| match decoder.find_tag(tag) {
             Ok(Some(value)) => value.into_f64_vec().ok(),
@@ -69,9 +70,15 @@ impl Geo {
                 }
             }
         }
-        if let Ok(Some(value)) = decoder.find_tag(Tag::GdalNodata)
-            && let Ok(text) = value.into_string()
-        {
+        let said = match decoder.find_tag(Tag::GdalNodata) {
+            Ok(Some(value)) => Some(value.into_string().ok()),
+            Ok(None) => None,
+            Err(_) => Some(None),
+        };
+        if let Some(None) = said {
+            geo.no_number = Some("no text".into());
+        }
+        if let Some(Some(text)) = said {
             let text = text.trim_matches(|c: char| c == '\0' || c.is_whitespace());
             let word = text.trim_start_matches(['-', '+']);
             geo.no_data = if word.eq_ignore_ascii_case("nan") {
@@ -81,6 +88,7 @@ impl Geo {
             } else {
                 parse_number(text.as_bytes()).ok()
             };
+            geo.no_number = geo.no_data.is_none().then(|| quoted(text.as_bytes()));
         }
         geo
     }

@@ -6,9 +6,14 @@
 //! 2019) the distance of samples, the place of one of them, and whether places are degrees are read.
 
 mod geo;
+#[cfg(test)]
+mod piece_tests;
+mod pieces;
 mod read;
+mod source;
 #[cfg(test)]
 mod tests;
+mod words;
 
 use shapeloom_shape::{Kind, UpAxis};
 

@@ -1,15 +1,16 @@
 //! Reading TIFF.
 
-use std::io::Cursor;
-
 use shapeloom_core::glam::DVec2;
 use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_shape::Units;
-use tiff::decoder::{ChunkType, Decoder, DecodingResult, Limits};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
-use tiff::{ColorType, TiffError};
+use tiff::{ColorType, TiffError, TiffFormatError};
 
 use super::geo::Geo;
+use super::pieces::Pieces;
+use super::source::{Source, Stopped};
+use super::words::{color_words, unsupported_words};
 use crate::heights::{
     Channels, DEGREES, NorthFirst, Pixels, check_options, check_size, guess_spacing, no_height, part_of, picture_scale,
     room, shape_of,
@@ -18,7 +19,9 @@ use crate::memory::Memory;
 use crate::{Fault, HeightEncoding, ReadContext, ReadError, ReadShape};
 
 /// LZW gives at most about 1365 bytes for one, deflate 1032.
-const MOST_FROM_A_BYTE: u64 = 1400;
+pub(super) const MOST_FROM_A_BYTE: u64 = 1400;
+/// After how many numbers the caller is asked whether to go on: one strip may hold the whole image.
+const POLLED: usize = 1 << 14;
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
     check_options(&context.options)?;
@@ -32,7 +35,19 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     let mut limits = Limits::default();
     limits.ifd_value_size = input.len();
     memory.take(input.len(), 2)?;
-    let mut decoder = Decoder::new(Cursor::new(input)).map_err(told)?.with_limits(limits.clone());
+    let stopped = Stopped::default();
+    let source = Source::new(input, &context.exec, &stopped);
+    let decoder = Decoder::new(source).map_err(|error| match error {
+        // Before this the limits cannot be set.
+        TiffError::LimitsExceeded => {
+            Fault::new("E-tiff-limit", Place::Whole, "a tag of more than 1 MiB", "smaller ones")
+                .category(Category::OverLimit)
+                .within("image 0")
+        }
+        other => told(other),
+    });
+    stopped.check()?;
+    let mut decoder = decoder?.with_limits(limits.clone());
     let (columns, rows) = decoder.dimensions().map_err(told)?;
     let place = Place::Whole;
     let (columns, rows) = check_size(u64::from(columns), u64::from(rows), place, "image 0", input.len(), context)?;
@@ -45,12 +60,22 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
         return Err(Fault::new("E-tiff-claim", Place::Whole, found, expected).within("image 0").into());
     }
     // No strip or tile is larger than the image, but for what tiles have beyond its borders.
-    let largest = usize::try_from(bytes).unwrap_or(usize::MAX).saturating_mul(2).max(1 << 20);
-    limits.decoding_buffer_size = largest;
-    limits.intermediate_buffer_size = largest;
+    limits.decoding_buffer_size = usize::try_from(bytes).unwrap_or(usize::MAX).saturating_mul(2).max(1 << 20);
+    // Numbers of bytes larger than needed do no harm: only what is needed is read.
+    limits.intermediate_buffer_size = usize::MAX;
     decoder = decoder.with_limits(limits);
     let geo = Geo::read(&mut decoder);
-    let raw = samples(&mut decoder, &kind, (columns, rows), &geo, context, &mut memory, &mut findings)?;
+    if let Some(text) = &geo.no_number {
+        let message =
+            format!("the tag GDAL_NODATA is {text}, which is no number: no samples were taken as holes by it");
+        findings.push("W-tiff-nodata", Severity::Warning, Place::Whole, message);
+    }
+    let pieces =
+        Pieces::check(&mut decoder, (columns, rows), kind.bits, input.len() as u64, &mut memory, &mut findings)?;
+    stopped.check()?;
+    let raw = samples(&mut decoder, &pieces, &kind, (columns, rows), &geo, context, &mut memory, &mut findings);
+    stopped.check()?;
+    let raw = raw?;
     if decoder.more_images() {
         let message = "the file has several images: the first was read";
         findings.push("W-tiff-images", Severity::Note, Place::Whole, message);
@@ -70,7 +95,7 @@ struct Kind {
 }
 
 impl Kind {
-    fn of(decoder: &mut Decoder<Cursor<&[u8]>>) -> Result<Self, Box<Fault>> {
+    fn of(decoder: &mut Decoder<Source<'_>>) -> Result<Self, Box<Fault>> {
         let color = decoder.colortype().map_err(told)?;
         let unsigned = !matches!(decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat), Ok(Some(formats)) if formats.iter().any(|format| *format != 1));
         let number = |tag: Tag, decoder: &mut Decoder<_>| decoder.find_tag_unsigned::<u16>(tag).ok().flatten();
@@ -83,26 +108,26 @@ impl Kind {
             }
             ColorType::RGB(bits) => (Channels::Rgb, bits),
             ColorType::RGBA(bits) => (Channels::Rgba, bits),
-            other => {
-                let fault = Fault::new(
-                    "E-tiff-feature",
-                    Place::Whole,
-                    format!("{other:?}"),
-                    "one channel, or red, green and blue",
-                );
-                return Err(fault.category(Category::Unsupported));
-            }
+            other => return Err(unread(color_words(other), "one channel, or red, green and blue")),
         };
         let several = channels != Channels::Grey;
-        let whole = matches!(bits, 8 | 16) || (!several && matches!(bits, 32 | 64));
-        if !whole || (several && (planar || !unsigned)) || (inverted && (!unsigned || several || bits > 16)) {
-            let kind = if unsigned { "whole numbers" } else { "signed or floating numbers" };
-            let mut found = format!("{} channels of {kind} of {bits} bits", channels.count());
-            found += if planar { ", in planes" } else { "" };
-            found += if inverted { ", of which 0 is white" } else { "" };
-            let fault =
-                Fault::new("E-tiff-feature", Place::Whole, found, "one channel, or grey or colours side by side");
-            return Err(fault.category(Category::Unsupported));
+        let count = channels.count();
+        if !several && !matches!(bits, 8 | 16 | 32 | 64) {
+            return Err(unread(format!("one channel of {bits} bits"), "8, 16, 32 or 64 bits"));
+        }
+        if several && !matches!(bits, 8 | 16) {
+            return Err(unread(format!("{count} channels of {bits} bits"), "8 or 16 bits, or one channel"));
+        }
+        if several && planar {
+            return Err(unread(format!("{count} channels in planes"), "channels side by side, or one channel"));
+        }
+        if several && !unsigned {
+            let found = format!("{count} channels of signed or floating numbers");
+            return Err(unread(found, "unsigned numbers, or one channel"));
+        }
+        if inverted && (!unsigned || several || bits > 16) {
+            let found = if several { "colours of which 0 is white" } else { "heights of which 0 is white" };
+            return Err(unread(found.into(), "0 as the lowest"));
         }
         Ok(Self { channels, bits, unsigned, inverted })
     }
@@ -121,9 +146,15 @@ impl Kind {
     }
 }
 
+fn unread(found: String, expected: &str) -> Box<Fault> {
+    Fault::new("E-tiff-feature", Place::Whole, found, expected).category(Category::Unsupported).within("image 0")
+}
+
 /// The number of each pixel, row by row; not a number for holes.
+#[allow(clippy::too_many_arguments)]
 fn samples(
-    decoder: &mut Decoder<Cursor<&[u8]>>,
+    decoder: &mut Decoder<Source<'_>>,
+    pieces: &Pieces,
     kind: &Kind,
     (columns, rows): (u32, u32),
     geo: &Geo,
@@ -134,12 +165,12 @@ fn samples(
     let mut all = room(columns as usize * rows as usize, memory)?;
     all.resize(columns as usize * rows as usize, f64::NAN);
     let mut pixels = Pixels::try_new(context.options.encoding, kind.channels, kind.full(), columns)?;
-    let tiles = decoder.get_chunk_type() == ChunkType::Tile;
-    let count = if tiles { decoder.tile_count() } else { decoder.strip_count() }.map_err(told)?;
-    let (wide, high) = decoder.chunk_dimensions();
-    let across = if tiles { columns.div_ceil(wide.max(1)) } else { 1 };
-    // One strip or tile at a time, before and after it is unpacked.
-    let _chunk = context.exec.reserve(2 * u64::from(wide) * u64::from(high.min(rows)) * kind.pixel_bytes())?;
+    let Pieces { count, wide, high, .. } = *pieces;
+    let across = if pieces.tiles { columns.div_ceil(wide.max(1)) } else { 1 };
+    // One strip or tile at a time, before and after it is unpacked, and a row with what is beyond the border.
+    let inside = 2u64.saturating_mul(wide.min(columns).into()).saturating_mul(high.min(rows).into());
+    let bytes = inside.saturating_add(wide.into()).saturating_mul(kind.pixel_bytes());
+    let _chunk = context.exec.reserve(bytes)?;
     for chunk in 0..count {
         context.exec.check()?;
         context.exec.progress(f64::from(chunk) / f64::from(count));
@@ -148,8 +179,10 @@ fn samples(
             break;
         }
         let (width, height) = decoder.chunk_data_dimensions(chunk);
-        let read = decoder.read_chunk(chunk).map_err(|error| {
-            told(error).within(format!("image 0, {} {chunk}", if tiles { "tile" } else { "strip" }))
+        decoder.inner().end_at(pieces.end(chunk));
+        let read = decoder.read_chunk(chunk).map_err(|error| match error {
+            TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => pieces.cut_off(chunk),
+            other => told(other).within(format!("image 0, {} {chunk}", pieces.word())),
         })?;
         let mut place = |row: usize, column: usize, value: f64| {
             let (row, column) = (top as usize + row, left as usize + column);
@@ -161,14 +194,21 @@ fn samples(
         };
         let (width, height) = (width as usize, height as usize);
         if kind.channels == Channels::Grey {
-            for (at, value) in values(&read, geo.no_data).take(width * height).enumerate() {
+            for (at, value) in values(&read, geo.no_data).take(width.saturating_mul(height)).enumerate() {
+                if at % POLLED == 0 {
+                    context.exec.check()?;
+                }
                 place(at / width.max(1), at % width.max(1), value);
             }
         } else {
             let channels = kind.channels.count();
             let mut pixel = [0u32; 4];
             let mut channel = 0;
-            for (at, value) in values(&read, None).take(width * height * channels).enumerate() {
+            let numbers = width.saturating_mul(height).saturating_mul(channels);
+            for (at, value) in values(&read, None).take(numbers).enumerate() {
+                if at % POLLED == 0 {
+                    context.exec.check()?;
+                }
                 pixel[channel] = value as u32;
                 channel += 1;
                 if channel == channels {
@@ -179,6 +219,7 @@ fn samples(
             }
         }
     }
+    decoder.inner().end_at(u64::MAX);
     pixels.finish(findings);
     Ok(all)
 }
@@ -230,8 +271,7 @@ fn placed(
     } else {
         no_height(context, if encoded { "colours that encode metres" } else { "samples that are heights" })?;
         if kind.inverted {
-            let fault = Fault::new("E-tiff-feature", Place::Whole, "heights of which 0 is white", "0 as the lowest");
-            return Err(fault.category(Category::Unsupported).into());
+            return Err(unread("heights of which 0 is white".into(), "0 as the lowest").into());
         }
         known.unwrap_or_else(|| DVec2::splat(guess_spacing(context, findings)))
     };
@@ -250,21 +290,27 @@ fn placed(
     Ok(shape)
 }
 
-fn told(error: TiffError) -> Box<Fault> {
+pub(super) fn told(error: TiffError) -> Box<Fault> {
     let place = Place::Whole;
     let fault = match error {
+        TiffError::FormatError(TiffFormatError::InconsistentSizesEncountered) => Fault::new(
+            "E-tiff-strip",
+            place,
+            "tags of strips or tiles that contradict each other",
+            "as many StripOffsets and StripByteCounts as strips by RowsPerStrip and ImageLength, or as many TileOffsets \
+             and TileByteCounts as tiles",
+        ),
         TiffError::FormatError(error) => Fault::new("E-tiff-data", place, error.to_string(), "a sound TIFF file"),
         TiffError::UnsupportedError(error) => {
-            let fault = Fault::new("E-tiff-feature", place, error.to_string(), "a kind of TIFF that is read");
-            fault.category(Category::Unsupported)
+            return unread(unsupported_words(error), "a kind of TIFF that is read");
         }
         TiffError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             Fault::new("E-tiff-truncated", place, "the end of the data", "all strips and tags")
         }
         TiffError::IoError(error) => Fault::new("E-tiff-data", place, error.to_string(), "sound compressed data"),
+        // Sizes were checked: what does not fit is a number that lies.
         TiffError::LimitsExceeded | TiffError::IntSizeError => {
-            let fault = Fault::new("E-tiff-limit", place, "parts larger than the image", "strips and tiles within it");
-            fault.category(Category::OverLimit)
+            Fault::new("E-tiff-claim", place, "a tag, strip or tile larger than the image", "parts within it")
         }
         TiffError::UsageError(error) => Fault::new("E-tiff-data", place, error.to_string(), "a sound TIFF file"),
     };

@@ -13,7 +13,7 @@ use tiff::tags::Tag;
 use super::FORMAT;
 use crate::{HeightEncoding, ReadContext, ReadError, ReadOptions, ReadShape};
 
-fn read_with(input: &[u8], options: ReadOptions) -> Result<ReadShape, ReadError> {
+pub(super) fn read_with(input: &[u8], options: ReadOptions) -> Result<ReadShape, ReadError> {
     let exec = Exec::default().with_memory(8 << 20);
     crate::read(input, &FORMAT, &ReadContext { options, exec, ..ReadContext::named("x.tif") })
 }
@@ -23,19 +23,24 @@ fn plain(input: &[u8]) -> ReadShape {
 }
 
 /// The heights with the northern row first, as pictures have them.
-fn rows(read: &ReadShape) -> Vec<f64> {
+pub(super) fn rows(read: &ReadShape) -> Vec<f64> {
     let field = HeightField::from_geometry(&read.shape.parts[0].geometry).unwrap();
     field.heights().chunks(field.columns() as usize).rev().flatten().copied().collect()
 }
 
-fn codes(read: &ReadShape) -> Vec<&'static str> {
+pub(super) fn codes(read: &ReadShape) -> Vec<&'static str> {
     read.findings.iter().map(|finding| finding.code).collect()
 }
 
-type Tags<'a> = &'a [(u16, &'a [f64])];
+pub(super) type Tags<'a> = &'a [(u16, &'a [f64])];
 
 /// A file of the encoder, 3 × 2, with tags of doubles.
-fn encoded<C: ColorType>(data: &[C::Inner], compression: Compression, tags: Tags<'_>, no_data: Option<&str>) -> Vec<u8>
+pub(super) fn encoded<C: ColorType>(
+    data: &[C::Inner],
+    compression: Compression,
+    tags: Tags<'_>,
+    no_data: Option<&str>,
+) -> Vec<u8>
 where
     [C::Inner]: TiffValue,
 {
@@ -72,7 +77,7 @@ fn every_kind_of_number_is_read_exactly() {
 }
 
 /// Tags laid down by hand: 3 × 2 samples, in either byte order.
-fn by_hand(big: bool, depth: u16, format: u16, data: &[u8]) -> Vec<u8> {
+pub(super) fn by_hand(big: bool, depth: u16, format: u16, data: &[u8]) -> Vec<u8> {
     let word = |value: u16| if big { value.to_be_bytes() } else { value.to_le_bytes() };
     let long = |value: u32| if big { value.to_be_bytes() } else { value.to_le_bytes() };
     let mut bytes = if big { b"MM\0*\0\0\0\x08".to_vec() } else { b"II*\0\x08\0\0\0".to_vec() };
