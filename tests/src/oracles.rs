@@ -1,8 +1,10 @@
 //! Distances by brute force, sharing nothing with the crates but their vectors.
 
 use shapeloom::core::glam::DVec3;
+use shapeloom::isosurface::{Inside, Slabs};
 use shapeloom::mesh::{HeightField, PolyMesh, TriMesh};
 use shapeloom::shape::Geometry;
+use shapeloom::voxels::VoxelGrid;
 
 /// The distance from a point to a segment.
 pub fn to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
@@ -109,6 +111,7 @@ pub fn samples(geometry: &Geometry) -> Vec<DVec3> {
             points
         }
         Geometry::HeightField(field) => bilinear(field),
+        Geometry::VoxelGrid(grid) => trilinear_surface(grid),
         other => Pieces::of(other).map_or(Vec::new(), |pieces| pieces.samples()),
     }
 }
@@ -123,6 +126,48 @@ pub fn bernstein(control: &[DVec3], t: f64) -> DVec3 {
         binomial *= (n - i) as f64 / (i + 1) as f64;
     }
     sum
+}
+
+/// Points where the trilinear interpolant of a grid reaches its iso value, on lines through each cell, and places of the border
+/// that are inside.
+fn trilinear_surface(grid: &VoxelGrid) -> Vec<DVec3> {
+    const LINES: u32 = 4;
+    let [nx, ny, nz] = grid.lattice().dimensions();
+    let iso = grid.default_iso().expect("a grid that says where its surface is");
+    let sign = if grid.inside() == Inside::Below { 1.0 } else { -1.0 };
+    let mut points = Vec::new();
+    let cells = (0..nz - 1).flat_map(|k| (0..ny - 1).flat_map(move |j| (0..nx - 1).map(move |i| [i, j, k])));
+    for [i, j, k] in cells {
+        let corner = |c: u32| f64::from(grid.sample([i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)]));
+        let value = |at: DVec3| {
+            let weight = |c: u32| {
+                let part = |bit: u32, x: f64| if c >> bit & 1 == 1 { x } else { 1.0 - x };
+                part(0, at.x) * part(1, at.y) * part(2, at.z)
+            };
+            sign * ((0..8).map(|c| weight(c) * corner(c)).sum::<f64>() - iso)
+        };
+        let place = |at: DVec3| {
+            let base = DVec3::new(f64::from(i), f64::from(j), f64::from(k));
+            grid.lattice().placement().point(base + at)
+        };
+        for axis in 0..3 {
+            for line in 0..(LINES + 1) * (LINES + 1) {
+                let mut at = DVec3::ZERO;
+                at[(axis + 1) % 3] = f64::from(line % (LINES + 1)) / f64::from(LINES);
+                at[(axis + 2) % 3] = f64::from(line / (LINES + 1)) / f64::from(LINES);
+                // Along a line parallel to an edge the interpolant is linear.
+                let end = at + DVec3::AXES[axis];
+                let (a, b) = (value(at), value(end));
+                if (a < 0.0) != (b < 0.0) {
+                    points.push(place(at.lerp(end, a / (a - b))));
+                }
+                let (low, high) = ([i, j, k][axis] == 0, [i, j, k][axis] + 2 == [nx, ny, nz][axis]);
+                points.extend((low && a < 0.0).then(|| place(at)));
+                points.extend((high && b < 0.0).then(|| place(end)));
+            }
+        }
+    }
+    points
 }
 
 fn bilinear(field: &HeightField) -> Vec<DVec3> {

@@ -1,12 +1,14 @@
 //! Shapes of every kind to try things on.
 
-use shapeloom::core::Exec;
-use shapeloom::core::glam::{DVec2, DVec3};
+use shapeloom::core::glam::{DMat3, DVec2, DVec3};
+use shapeloom::core::{Affine, Exec};
 use shapeloom::io::{ReadContext, format_by_id, read};
+use shapeloom::isosurface::Lattice;
 use shapeloom::mesh::primitives::{Cylinder, Platonic, Solid, Torus};
 use shapeloom::mesh::{Column, Domain, GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
 use shapeloom::parametric::{BezierCurve, BezierPatch, BezierSurface};
 use shapeloom::shape::{Geometry, Kind};
+use shapeloom::voxels::{Quantity, Samples, VoxelGrid};
 
 use crate::support::{Dice, data};
 
@@ -41,6 +43,28 @@ pub fn hills() -> HeightField {
         })
         .collect();
     HeightField::try_new(12, 9, DVec2::new(0.5, 0.4), heights).expect("a grid of the right size")
+}
+
+/// Distances to a ball that the border cuts, on a lattice that is neither cubic nor along the axes.
+pub fn cut_ball() -> VoxelGrid {
+    let steps = [DVec3::new(0.3, 0.1, 0.0), DVec3::new(-0.1, 0.25, 0.0), DVec3::new(0.0, 0.0, 0.4)];
+    let linear = DMat3::from_cols(steps[0], steps[1], steps[2]);
+    let placement = Affine { linear, translation: DVec3::new(3.0, -1.0, 2.0) };
+    let lattice = Lattice::try_new([12, 10, 9], placement).expect("three directions");
+    let center = lattice.position([7, 5, 3]);
+    let samples = (0..lattice.samples())
+        .map(|at| (lattice.position(lattice.coordinates(at)).distance(center) - 1.4) as f32)
+        .collect();
+    VoxelGrid::try_new(lattice, Samples::F32(samples), Quantity::SignedDistance)
+        .expect("as many samples as the lattice has")
+}
+
+/// Random full and empty cells.
+pub fn random_cells() -> VoxelGrid {
+    let lattice = Lattice::along_axes([7, 6, 5], DVec3::ZERO, DVec3::ONE).expect("a lattice");
+    let mut dice = Dice(4);
+    let samples = (0..lattice.samples()).map(|_| u8::from(dice.unit() < 0.4)).collect();
+    VoxelGrid::try_new(lattice, Samples::U8(samples), Quantity::Occupancy).expect("as many samples as the lattice has")
 }
 
 /// Three edges that meet in a vertex.
@@ -138,6 +162,7 @@ pub fn of_kind(kind: Kind) -> Vec<(&'static str, Geometry)> {
             ("nothing", GeometricGraph::default().into()),
         ],
         Kind::HeightField => vec![("hills", hills().into())],
+        Kind::VoxelGrid => vec![("cut ball", cut_ball().into()), ("random cells", random_cells().into())],
         Kind::PolyMesh => vec![
             ("tagged cylinder", tagged_polygons().into()),
             ("dodecahedron", cube().into()),

@@ -74,6 +74,19 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "A coordinate is so small beside the largest of the shape (below about 1e-86 of it) that exact arithmetic on it would lose bits. Nothing is guessed: set coordinates that small to 0.",
     ),
     (
+        "E-lattice-placement",
+        "The steps between the samples of a grid are not finite or lie in one plane: the grid would have no volume. Check the spacing and the directions.",
+    ),
+    (
+        "E-lattice-samples",
+        "The number of samples is not the product of the dimensions. Check the header, or the order and number of the values.",
+    ),
+    (
+        "E-lattice-size",
+        "A grid needs at least one sample in each direction, and holds at most 2^40, of which a slab holds 2^31.",
+    ),
+    ("E-lattice-spacing", "The distance between samples must be a positive number in each direction."),
+    (
         "E-memory-budget",
         "The work needs more memory than --max-memory allows; ask for a coarser result, or allow more.",
     ),
@@ -266,6 +279,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-compare-open",
         "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
+    ),
+    (
+        "W-iso-empty",
+        "No sample is on the other side of the iso value: the surface is empty. The message gives the range of the samples; set iso= to a value within it.",
+    ),
+    (
+        "W-iso-not-finite",
+        "Samples that are NaN or infinite count as outside; the surface closes around them in the middle of the cells.",
     ),
     (
         "W-orient-one-sided",

@@ -6,6 +6,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine, Category, Diagnostic};
 use shapeloom_mesh::{GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
 use shapeloom_parametric::{BezierCurve, BezierSurface};
+use shapeloom_voxels::VoxelGrid;
 
 use crate::Kind;
 
@@ -25,6 +26,8 @@ pub enum Geometry {
     GeometricGraph(GeometricGraph),
     /// Heights over a grid.
     HeightField(HeightField),
+    /// Samples on a lattice.
+    VoxelGrid(VoxelGrid),
     /// Indexed polygons.
     PolyMesh(PolyMesh),
     /// Indexed triangles.
@@ -41,6 +44,7 @@ impl Geometry {
             Self::Polyline(_) => Kind::Polyline,
             Self::GeometricGraph(_) => Kind::GeometricGraph,
             Self::HeightField(_) => Kind::HeightField,
+            Self::VoxelGrid(_) => Kind::VoxelGrid,
             Self::PolyMesh(_) => Kind::PolyMesh,
             Self::TriMesh(_) => Kind::TriMesh,
         }
@@ -55,6 +59,7 @@ impl Geometry {
             Self::Polyline(line) => line.bounds(),
             Self::GeometricGraph(graph) => graph.bounds(),
             Self::HeightField(field) => field.bounds(),
+            Self::VoxelGrid(grid) => grid.bounds(),
             Self::PolyMesh(mesh) => mesh.bounds(),
             Self::TriMesh(mesh) => mesh.bounds(),
         }
@@ -70,6 +75,7 @@ impl Geometry {
             Self::Polyline(line) => Self::Polyline(line.transformed(map)),
             Self::GeometricGraph(graph) => Self::GeometricGraph(graph.transformed(map)),
             Self::HeightField(field) => Self::HeightField(field.transformed(map)),
+            Self::VoxelGrid(grid) => Self::VoxelGrid(grid.transformed(map)),
             Self::PolyMesh(mesh) => Self::PolyMesh(mesh.transformed(map)),
             Self::TriMesh(mesh) => Self::TriMesh(mesh.transformed(map)),
         }
@@ -84,6 +90,7 @@ impl Geometry {
             Self::Polyline(line) => line.memory_bytes(),
             Self::GeometricGraph(graph) => graph.memory_bytes(),
             Self::HeightField(field) => field.memory_bytes(),
+            Self::VoxelGrid(grid) => grid.memory_bytes(),
             Self::PolyMesh(mesh) => mesh.memory_bytes(),
             Self::TriMesh(mesh) => mesh.memory_bytes(),
         }
@@ -157,6 +164,7 @@ holds!(
     Polyline(Polyline),
     GeometricGraph(GeometricGraph),
     HeightField(HeightField),
+    VoxelGrid(VoxelGrid),
     PolyMesh(PolyMesh),
     TriMesh(TriMesh),
 );

@@ -35,6 +35,8 @@ pub enum Kind {
     GeometricGraph,
     /// Heights over a grid.
     HeightField,
+    /// Samples on a lattice.
+    VoxelGrid,
     /// Indexed polygons.
     PolyMesh,
     /// Indexed triangles.
@@ -43,13 +45,14 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind, in the order of the families.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::PointCloud,
         Self::BezierCurve,
         Self::BezierSurface,
         Self::Polyline,
         Self::GeometricGraph,
         Self::HeightField,
+        Self::VoxelGrid,
         Self::PolyMesh,
         Self::TriMesh,
     ];
@@ -63,6 +66,7 @@ impl Kind {
             Self::Polyline => "polyline",
             Self::GeometricGraph => "geometric-graph",
             Self::HeightField => "height-field",
+            Self::VoxelGrid => "voxel-grid",
             Self::PolyMesh => "poly-mesh",
             Self::TriMesh => "tri-mesh",
         }
@@ -78,6 +82,7 @@ impl Kind {
         match self {
             Self::PointCloud => Family::Points,
             Self::BezierCurve | Self::BezierSurface => Family::Parametric,
+            Self::VoxelGrid => Family::Voxels,
             Self::Polyline | Self::GeometricGraph | Self::HeightField | Self::PolyMesh | Self::TriMesh => {
                 Family::Meshes
             }

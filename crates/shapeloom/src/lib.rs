@@ -53,6 +53,8 @@
 //! | [`mesh`] | triangle and polygon meshes, polylines, height fields, point clouds, attributes, primitives |
 //! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
+//! | [`isosurface`] | surfaces where samples on a lattice reach a value |
+//! | [`voxels`] | grids of samples placed in space |
 //! | [`shape`] | the dynamic shape of parts |
 //! | [`io`] | file formats |
 //! | [`render`] | pictures on the CPU |
@@ -61,9 +63,11 @@
 pub use shapeloom_convert as convert;
 pub use shapeloom_core as core;
 pub use shapeloom_io as io;
+pub use shapeloom_isosurface as isosurface;
 pub use shapeloom_judge as judge;
 pub use shapeloom_mesh as mesh;
 pub use shapeloom_parametric as parametric;
 pub use shapeloom_render as render;
 pub use shapeloom_shape as shape;
 pub use shapeloom_spatial as spatial;
+pub use shapeloom_voxels as voxels;

@@ -203,6 +203,19 @@ impl Totals {
                     object.insert("highest".into(), account::number(high));
                 }
             }
+            Geometry::VoxelGrid(grid) => {
+                self.count(&mut object, "samples", grid.lattice().samples() as usize);
+                object.insert("dimensions".into(), json!(grid.lattice().dimensions()));
+                object.insert("spacing".into(), json!(grid.lattice().spacing().to_array()));
+                object.insert("sample_type".into(), json!(grid.samples().name()));
+                object.insert("quantity".into(), json!(grid.quantity().name()));
+                let range = grid.range();
+                if let Some([low, high]) = range.finite {
+                    object.insert("lowest".into(), account::number(f64::from(low)));
+                    object.insert("highest".into(), account::number(f64::from(high)));
+                }
+                self.count(&mut object, "not_finite", range.not_finite as usize);
+            }
             Geometry::BezierCurve(curve) => {
                 self.count(&mut object, "control_points", curve.control_points().len());
                 object.insert("degree".into(), json!(curve.degree()));

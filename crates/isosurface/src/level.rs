@@ -1,0 +1,154 @@
+//! Inside and outside of a surface among samples.
+
+use shapeloom_core::{ConvertError, Exec, Place, Report, Severity, choice};
+
+use crate::{IsoValue, Slabs, otsu_threshold};
+
+/// On which side of the iso value the inside is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Inside {
+    /// Values smaller than the iso value, as of distances.
+    Below,
+    /// Values larger than the iso value, as of densities.
+    Above,
+}
+
+choice! {
+    /// On which side of the iso value the inside is, as an option.
+    pub enum InsideChoice {
+        /// As the samples say of themselves: below for distances, above for densities.
+        Auto = "auto",
+        /// Smaller values.
+        Below = "below",
+        /// Larger values.
+        Above = "above",
+    }
+}
+
+/// What is inside: samples strictly on one side of a value. A sample that equals it is outside, and so is one that is not finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// The iso value.
+    pub iso: f32,
+    /// On which side the inside is.
+    pub inside: Inside,
+}
+
+impl Level {
+    /// Whether a sample is inside.
+    pub fn holds(&self, sample: f32) -> bool {
+        sample.is_finite()
+            && match self.inside {
+                Inside::Below => sample < self.iso,
+                Inside::Above => sample > self.iso,
+            }
+    }
+
+    /// Where between two samples, of which one is inside, their line reaches the iso value: 0 at `a`, 1 at `b`. In the middle
+    /// where one is not finite.
+    pub fn crossing(&self, a: f32, b: f32) -> f64 {
+        let (from, to, iso) = (f64::from(a), f64::from(b), f64::from(self.iso));
+        let part = (iso - from) / (to - from);
+        if part.is_finite() && a.is_finite() && b.is_finite() { part.clamp(0.0, 1.0) } else { 0.5 }
+    }
+
+    /// The level for what was asked for, and how it was found.
+    ///
+    /// # Errors
+    /// A slab cannot be had, or the reason to stop.
+    pub fn settle<S: Slabs + ?Sized>(
+        slabs: &S,
+        iso: IsoValue,
+        inside: InsideChoice,
+        exec: &Exec,
+    ) -> Result<(Self, String), ConvertError> {
+        let inside = match inside {
+            InsideChoice::Auto => slabs.inside(),
+            InsideChoice::Below => Inside::Below,
+            InsideChoice::Above => Inside::Above,
+        };
+        let (iso, source) = match (iso, slabs.default_iso()) {
+            (IsoValue::At(value), _) => (value as f32, "as given".to_owned()),
+            (IsoValue::Auto, Some(value)) => (value as f32, "as the kind of samples says".to_owned()),
+            (IsoValue::Auto, None) => {
+                let otsu = otsu_threshold(slabs, exec)?;
+                (otsu.threshold as f32, "Otsu's threshold".to_owned())
+            }
+        };
+        let side = match inside {
+            Inside::Below => "below",
+            Inside::Above => "above",
+        };
+        Ok((Self { iso, inside }, format!("iso value {iso} ({source}), inside {side}")))
+    }
+
+    /// Tells of samples that are not finite, and of a surface without triangles with the range of the samples.
+    ///
+    /// # Errors
+    /// A slab cannot be had, or the reason to stop.
+    pub fn tell<S: Slabs + ?Sized>(
+        &self,
+        slabs: &S,
+        not_finite: u64,
+        triangles: u64,
+        report: &mut Report,
+        exec: &Exec,
+    ) -> Result<(), ConvertError> {
+        report.figure("iso_value", f64::from(self.iso));
+        if not_finite > 0 {
+            let message = "samples that are NaN or infinite count as outside";
+            report.findings.push_many("W-iso-not-finite", Severity::Warning, Place::Whole, message, not_finite);
+        }
+        if triangles == 0 {
+            let message = match range(slabs, exec)? {
+                Some([low, high]) => {
+                    format!("no surface: the iso value is {}, the samples run from {low} to {high}", self.iso)
+                }
+                None => "no surface: no sample is finite".to_owned(),
+            };
+            report.findings.push("W-iso-empty", Severity::Warning, Place::Whole, message);
+        }
+        Ok(())
+    }
+}
+
+/// The smallest and the largest finite sample.
+fn range<S: Slabs + ?Sized>(slabs: &S, exec: &Exec) -> Result<Option<[f32; 2]>, ConvertError> {
+    let mut buffer = Vec::new();
+    let mut range: Option<[f32; 2]> = None;
+    for k in 0..slabs.lattice().dimensions()[2] {
+        exec.check()?;
+        for &sample in slabs.slab(k, &mut buffer)?.iter().filter(|sample| sample.is_finite()) {
+            let [low, high] = range.unwrap_or([sample; 2]);
+            range = Some([low.min(sample), high.max(sample)]);
+        }
+    }
+    Ok(range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_and_strange_samples_are_outside() {
+        for inside in [Inside::Below, Inside::Above] {
+            let level = Level { iso: 2.0, inside };
+            for sample in [2.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                assert!(!level.holds(sample), "{sample}");
+            }
+            assert_eq!(level.holds(1.0), inside == Inside::Below);
+            assert_eq!(level.holds(3.0), inside == Inside::Above);
+        }
+    }
+
+    #[test]
+    fn crossings_divide_as_the_values_do() {
+        let level = Level { iso: 1.0, inside: Inside::Below };
+        assert_eq!(level.crossing(0.0, 4.0), 0.25);
+        assert_eq!(level.crossing(4.0, 0.0), 0.75);
+        assert_eq!(level.crossing(0.0, f32::INFINITY), 0.5);
+        assert_eq!(level.crossing(f32::NAN, 0.0), 0.5);
+        assert!(level.crossing(f32::MIN, f32::MAX) == 0.5);
+    }
+}

@@ -1,0 +1,24 @@
+//! Isosurfaces: the surface where samples on a lattice reach a value.
+//!
+//! Every algorithm reads a [`Slabs`], a lattice of samples that is filled slab by slab, so that the same code serves dense grids,
+//! sampled fields and files larger than memory.
+
+mod border;
+mod error;
+mod field_slabs;
+#[cfg(test)]
+mod inside_bits;
+mod iso_value;
+mod lattice;
+mod level;
+mod otsu;
+mod slabs;
+
+pub use border::Border;
+pub use error::LatticeError;
+pub use field_slabs::FieldSlabs;
+pub use iso_value::IsoValue;
+pub use lattice::Lattice;
+pub use level::{Inside, InsideChoice, Level};
+pub use otsu::{Otsu, otsu_threshold};
+pub use slabs::Slabs;
