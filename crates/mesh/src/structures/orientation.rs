@@ -224,3 +224,28 @@ fn innermost(way: &[u32]) -> Vec<u32> {
     }
     way.to_vec()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_to_a_ring_is_left_out() {
+        assert_eq!(innermost(&[7, 1, 2, 3, 1]), [1, 2, 3]);
+        assert_eq!(innermost(&[1, 2, 3]), [1, 2, 3]);
+    }
+
+    /// A fan of triangles each of which lies the other way around than the one before: against the smallest, whichever way
+    /// that one was linked.
+    #[test]
+    fn faces_are_compared_with_the_smallest_of_their_component() {
+        for turned in 0..32u32 {
+            let triangles: Vec<[u32; 3]> =
+                (0..5u32).map(|k| if turned >> k & 1 == 1 { [0, k + 2, k + 1] } else { [0, k + 1, k + 2] }).collect();
+            let mesh = crate::TriMesh::try_new(vec![Default::default(); 7], triangles).unwrap();
+            let found = Orientation::of::<shapeloom_core::ConvertError>(&mesh, &Exec::default()).unwrap();
+            let expected: Vec<bool> = (0..5).map(|k| (turned >> k ^ turned) & 1 == 1).collect();
+            assert_eq!(found.against, expected, "{turned:b}");
+        }
+    }
+}
