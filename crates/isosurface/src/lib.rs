@@ -4,14 +4,16 @@
 //! sampled fields and files larger than memory.
 
 mod border;
+mod dual;
 mod error;
 mod field_slabs;
-#[cfg(test)]
 mod inside_bits;
 mod iso_value;
 mod lattice;
 mod level;
+mod manifold_surface_nets;
 mod otsu;
+mod result;
 mod slabs;
 
 pub use border::Border;
@@ -20,5 +22,6 @@ pub use field_slabs::FieldSlabs;
 pub use iso_value::IsoValue;
 pub use lattice::Lattice;
 pub use level::{Inside, InsideChoice, Level};
+pub use manifold_surface_nets::ManifoldSurfaceNets;
 pub use otsu::{Otsu, otsu_threshold};
 pub use slabs::Slabs;
