@@ -1,6 +1,5 @@
 //! What dual surfaces become.
 
-use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ConvertError, Converted, Deviation, Exec, Report};
 use shapeloom_mesh::{Blend, Column, Domain, MeshError, NORMAL, TransformRule, TriMesh, Values};
 
@@ -19,7 +18,7 @@ pub(crate) fn finish<S: Slabs + ?Sized>(
     let DualSurface { positions, normals, triangles, not_finite } = surface;
     let mut mesh = TriMesh::try_new(positions, triangles)?;
     if !normals.is_empty() {
-        mesh.insert_attribute(Domain::Vertex, normal_column(&normals)?).map_err(MeshError::from)?;
+        mesh.insert_attribute(Domain::Vertex, normal_column(normals)?).map_err(MeshError::from)?;
     }
     let (deviation, basis) = if not_finite > 0 {
         (Deviation::Unknown, "samples that are not finite leave holes in the interpolant")
@@ -47,9 +46,7 @@ pub(crate) fn cell_bound(lattice: &Lattice) -> f64 {
     lattice.cell_diagonal() * (1.0 + 1e-12) + 16.0 * f64::EPSILON * farthest
 }
 
-pub(crate) fn normal_column(normals: &[DVec3]) -> Result<Column, MeshError> {
-    let mut numbers = Vec::with_capacity(3 * normals.len());
-    normals.iter().for_each(|normal| numbers.extend_from_slice(&normal.to_array()));
-    let column = Column::try_new(NORMAL, 3, Values::F64(numbers))?;
+pub(crate) fn normal_column(normals: Vec<[f64; 3]>) -> Result<Column, MeshError> {
+    let column = Column::try_new(NORMAL, 3, Values::F64(normals.into_flattened()))?;
     Ok(column.with_blend(Blend::Direction).with_transform(TransformRule::Normal))
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use multiversion::multiversion;
-use shapeloom_core::glam::DVec3;
+use shapeloom_core::glam::{DMat3, DVec3};
 use shapeloom_core::{Affine, ConvertError, Exec, Reservation};
 use shapeloom_mesh::MeshError;
 
@@ -23,7 +23,9 @@ pub(super) struct Plan {
     pub(super) frame: Frame,
     pub(super) level: Level,
     pub(super) placement: Affine,
+    /// Whether normals are made, and the matrix that maps them, up to a positive factor.
     pub(super) normals: bool,
+    pub(super) cofactors: DMat3,
 }
 
 /// The vertices and triangles of a run of layers.
@@ -32,7 +34,7 @@ pub(super) struct Made {
     /// Places of the vertices, those of the layer below the run before its own.
     pub(super) positions: Vec<DVec3>,
     /// Their normals, if they were asked for.
-    pub(super) normals: Vec<DVec3>,
+    pub(super) normals: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// How many vertices belong to the layer below the run.
     pub(super) borrowed: usize,
@@ -66,6 +68,7 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
     let rows_at_once = (POLL / frame.stride).max(1);
     for k in start..layers.end {
         exec.check()?;
+        let done = (k + 1 - start) as f64 / (layers.end - start) as f64;
         while next_slice <= (k + 2).min(last_slice) {
             let slice = &mut signs[next_slice % KEPT];
             match frame.slab(next_slice) {
@@ -89,9 +92,9 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
         }
         layer.number_from(before as u32);
         if count > 0 {
-            grow(&mut made.positions, count as usize, &mut made.memory, exec)?;
+            grow(&mut made.positions, count as usize, done, &mut made.memory, exec)?;
             if plan.normals {
-                grow(&mut made.normals, count as usize, &mut made.memory, exec)?;
+                grow(&mut made.normals, count as usize, done, &mut made.memory, exec)?;
             }
             let slice = |from_layer: usize| (k + from_layer).checked_sub(1).and_then(|slice| frame.slab(slice));
             let slabs_around = ring.views(slabs, &mut spare, [0, 1, 2, 3].map(slice))?;
@@ -102,7 +105,7 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
             }
             collector.flush(plan, !R::MEAN_WILL_DO, &mut made);
             let surroundings = Surroundings { slabs: slabs_around, frame: *frame, level: plan.level, layer: k };
-            revise(&mut layer, &collector.special, rule, plan, &signs, &surroundings, &mut made, exec)?;
+            revise(&mut layer, &collector.special, rule, plan, &signs, &surroundings, &mut made, done, exec)?;
         }
         if k >= layers.start {
             let around = Around {
@@ -120,7 +123,7 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
                     // Each cell has three edges of its own.
                     let (from, to) = (rows.start * frame.stride, rows.end * frame.stride);
                     let cells: usize = layer.active[from..to].iter().map(|word| word.count_ones() as usize).sum();
-                    grow(&mut made.triangles, 6 * cells, &mut made.memory, exec)?;
+                    grow(&mut made.triangles, 6 * cells, done, &mut made.memory, exec)?;
                     add_quads(&around, rows, &mut made.triangles);
                 }
             }
@@ -139,10 +142,19 @@ fn parts(rows: usize, size: usize) -> impl Iterator<Item = Range<usize>> {
 }
 
 /// Makes room for more elements, which is first taken from the budget.
-fn grow<T>(vector: &mut Vec<T>, more: usize, memory: &mut Vec<Reservation>, exec: &Exec) -> Result<(), ConvertError> {
+fn grow<T>(
+    vector: &mut Vec<T>,
+    more: usize,
+    done: f64,
+    memory: &mut Vec<Reservation>,
+    exec: &Exec,
+) -> Result<(), ConvertError> {
     let free = vector.capacity() - vector.len();
     if free < more {
-        let capacity = (vector.len() + more).max(vector.capacity() + vector.capacity() / 2);
+        let needed = vector.len() + more;
+        // As many as there will be if it goes on like this, but not far more than are sure to come.
+        let expected = (needed as f64 * 1.05 / done.max(0.01)) as usize;
+        let capacity = expected.clamp(needed.max(vector.capacity() + vector.capacity() / 4), 2 * needed);
         memory.push(exec.reserve_elements((capacity - vector.capacity()) as u64, size_of::<T>())?);
         vector.reserve_exact(capacity - vector.len());
     }
@@ -205,9 +217,9 @@ impl Collector {
             let mut special = everywhere || !SIMPLE[(batch.insides[n] & 255) as usize] || !self.tame[row as usize];
             if plan.normals {
                 let gradient = DVec3::from([0, 1, 2].map(|axis| f64::from(batch.gradients[axis][n])));
-                let normal = plan.placement.normal(gradient);
+                let normal = (plan.cofactors * gradient).normalize_or_zero();
                 special |= !normal.is_finite() || normal == DVec3::ZERO;
-                made.normals.push(normal);
+                made.normals.push(normal.to_array());
             }
             if special {
                 self.special.push(Special { key: batch.keys[n], cell: [column, row], vertex });
@@ -287,6 +299,7 @@ fn revise<R: VertexRule>(
     signs: &[SignSlice; KEPT],
     surroundings: &Surroundings<'_>,
     made: &mut Made,
+    done: f64,
     exec: &Exec,
 ) -> Result<(), ConvertError> {
     let frame = &plan.frame;
@@ -321,14 +334,14 @@ fn revise<R: VertexRule>(
             if piece == 0 {
                 made.positions[vertex] = position;
                 if let Some(normal) = normal {
-                    made.normals[vertex] = normal;
+                    made.normals[vertex] = normal.to_array();
                 }
             } else {
-                grow(&mut made.positions, 1, &mut made.memory, exec)?;
+                grow(&mut made.positions, 1, done, &mut made.memory, exec)?;
                 made.positions.push(position);
                 if let Some(normal) = normal {
-                    grow(&mut made.normals, 1, &mut made.memory, exec)?;
-                    made.normals.push(normal);
+                    grow(&mut made.normals, 1, done, &mut made.memory, exec)?;
+                    made.normals.push(normal.to_array());
                 }
             }
         }

@@ -1,8 +1,8 @@
 //! A whole dual surface.
 
-use shapeloom_core::glam::DVec3;
-use shapeloom_core::parallel::map_chunks;
-use shapeloom_core::{ConvertError, Exec, Reservation, Threads};
+use shapeloom_core::glam::{DMat3, DVec3};
+use shapeloom_core::parallel::{map_chunks, workers};
+use shapeloom_core::{Affine, ConvertError, Exec, Reservation};
 
 use super::VertexRule;
 use super::block::{Made, Plan, make};
@@ -14,7 +14,7 @@ use crate::{Border, Level, Slabs};
 pub(crate) struct DualSurface {
     pub(crate) positions: Vec<DVec3>,
     /// Unit normals, if they were asked for.
-    pub(crate) normals: Vec<DVec3>,
+    pub(crate) normals: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
     /// How many samples are not finite.
     pub(crate) not_finite: u64,
@@ -40,10 +40,11 @@ pub(crate) fn extract<S: Slabs + ?Sized, R: VertexRule>(
         return Ok(DualSurface { not_finite: not_finite(slabs, level, exec)?, ..DualSurface::default() });
     }
     let frame = Frame::new(lattice.dimensions(), closed);
-    let plan = Plan { frame, level, placement: *lattice.placement(), normals };
+    let placement = *lattice.placement();
+    let cofactors = cofactors(&placement);
+    let plan = Plan { frame, level, placement, normals, cofactors };
     let layers = frame.cells(2);
-    let threads = exec.threads() == Threads::Pool && layers > LAYERS;
-    let mut surface = if threads {
+    let mut surface = if workers(exec) > 1 && layers > LAYERS {
         let all = layers.div_ceil(LAYERS);
         let runs = map_chunks(exec, layers, LAYERS, |run| {
             let part = |at: usize| at as f64 / all as f64 / LAYERS as f64;
@@ -66,6 +67,15 @@ pub(crate) fn extract<S: Slabs + ?Sized, R: VertexRule>(
         drop_unused(&mut surface, exec)?;
     }
     Ok(surface)
+}
+
+/// The matrix that maps normals, up to a positive factor: the cofactors of the map, scaled to neither overflow nor vanish.
+fn cofactors(placement: &Affine) -> DMat3 {
+    let steps = placement.linear;
+    let size = steps.x_axis.abs().max(steps.y_axis.abs()).max(steps.z_axis.abs()).max_element();
+    let [x, y, z] = [steps.x_axis, steps.y_axis, steps.z_axis].map(|column| column / size);
+    let sign = if placement.reverses_orientation() { -1.0 } else { 1.0 };
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
 }
 
 /// What a run needs beside its result: slabs that are not in memory, four slices of signs, two layers of cells.
