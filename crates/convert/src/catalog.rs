@@ -8,7 +8,7 @@ use shapeloom_mesh::{
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 use shapeloom_voxels::VoxelGrid;
-use shapeloom_voxels::isosurface::ManifoldSurfaceNets;
+use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, SurfaceNets};
 
 use crate::registry::{Converter, Effect, entry};
 
@@ -18,6 +18,8 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
         entry::<ManifoldSurfaceNets, VoxelGrid>(Effect::Reported),
+        entry::<SurfaceNets, VoxelGrid>(Effect::Reported),
+        entry::<DualContouring, VoxelGrid>(Effect::Reported),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),

@@ -5,6 +5,7 @@
 
 mod border;
 mod dual;
+mod dual_contouring;
 mod error;
 mod field_slabs;
 mod inside_bits;
@@ -13,10 +14,13 @@ mod lattice;
 mod level;
 mod manifold_surface_nets;
 mod otsu;
+mod qef;
 mod result;
 mod slabs;
+mod surface_nets;
 
 pub use border::Border;
+pub use dual_contouring::DualContouring;
 pub use error::LatticeError;
 pub use field_slabs::FieldSlabs;
 pub use iso_value::IsoValue;
@@ -25,3 +29,4 @@ pub use level::{Inside, InsideChoice, Level};
 pub use manifold_surface_nets::ManifoldSurfaceNets;
 pub use otsu::{Otsu, otsu_threshold};
 pub use slabs::Slabs;
+pub use surface_nets::SurfaceNets;

@@ -15,7 +15,7 @@ pub(crate) fn finish<S: Slabs + ?Sized>(
     border: Border,
     exec: &Exec,
 ) -> Result<Converted<TriMesh>, ConvertError> {
-    let DualSurface { positions, normals, triangles, not_finite } = surface;
+    let DualSurface { positions, normals, triangles, not_finite, held: _ } = surface;
     let mut mesh = TriMesh::try_new(positions, triangles)?;
     if !normals.is_empty() {
         mesh.insert_attribute(Domain::Vertex, normal_column(normals)?).map_err(MeshError::from)?;

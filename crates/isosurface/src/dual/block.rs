@@ -7,7 +7,6 @@ use shapeloom_core::glam::{DMat3, DVec3};
 use shapeloom_core::{Affine, ConvertError, Exec, Reservation};
 use shapeloom_mesh::MeshError;
 
-use super::VertexRule;
 use super::batch::{BATCH, Batch, gradients, means};
 use super::cell::{Cell, Surroundings};
 use super::cell_layer::{CellLayer, SplitCell};
@@ -15,6 +14,7 @@ use super::cell_tables::{PIECES, SIMPLE, double_face};
 use super::quads::{Around, add_quads};
 use super::sign_slice::{Frame, SignSlice};
 use super::slab_ring::{KEPT, SlabRing};
+use super::{Placed, VertexRule};
 use crate::{Inside, Level, Slabs};
 
 /// What does not change from layer to layer.
@@ -40,6 +40,8 @@ pub(super) struct Made {
     pub(super) borrowed: usize,
     /// Samples of the run's slices that are not finite.
     pub(super) not_finite: u64,
+    /// Vertices of the run's own layers that would have left their cells.
+    pub(super) held: u64,
     /// The memory of all this.
     pub(super) memory: Vec<Reservation>,
 }
@@ -105,7 +107,17 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
             }
             collector.flush(plan, !R::MEAN_WILL_DO, &mut made);
             let surroundings = Surroundings { slabs: slabs_around, frame: *frame, level: plan.level, layer: k };
-            revise(&mut layer, &collector.special, rule, plan, &signs, &surroundings, &mut made, done, exec)?;
+            revise(
+                &mut layer,
+                &collector.special,
+                rule,
+                plan,
+                &signs,
+                &surroundings,
+                &mut made,
+                (k >= layers.start, done),
+                exec,
+            )?;
         }
         if k >= layers.start {
             let around = Around {
@@ -299,7 +311,7 @@ fn revise<R: VertexRule>(
     signs: &[SignSlice; KEPT],
     surroundings: &Surroundings<'_>,
     made: &mut Made,
-    done: f64,
+    (own, done): (bool, f64),
     exec: &Exec,
 ) -> Result<(), ConvertError> {
     let frame = &plan.frame;
@@ -327,10 +339,11 @@ fn revise<R: VertexRule>(
         let second = made.positions.len() as u32;
         for piece in 0..usize::from(pieces.count) {
             let edges = pieces.edges[piece];
-            let place = rule.vertex(&cell, edges);
+            let Placed { place, held } = rule.vertex(&cell, edges);
+            made.held += u64::from(held && own);
             let position = plan.placement.point(cell.lattice_place() + place);
             let vertex = if piece == 0 { special.vertex } else { second + piece as u32 - 1 } as usize;
-            let normal = plan.normals.then(|| plan.placement.normal(cell.outward(edges, place)));
+            let normal = plan.normals.then(|| plan.placement.normal(rule.outward(&cell, edges, place)));
             if piece == 0 {
                 made.positions[vertex] = position;
                 if let Some(normal) = normal {

@@ -18,6 +18,8 @@ pub(crate) struct DualSurface {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// How many samples are not finite.
     pub(crate) not_finite: u64,
+    /// How many vertices would have left their cells.
+    pub(crate) held: u64,
 }
 
 /// Layers of cells in a run of its own. Each run takes the signs of three more slices and the vertices of one more layer than it
@@ -61,10 +63,11 @@ pub(crate) fn extract<S: Slabs + ?Sized, R: VertexRule>(
             normals: made.normals,
             triangles: made.triangles,
             not_finite: made.not_finite,
+            held: made.held,
         }
     };
     if !closed {
-        drop_unused(&mut surface, exec)?;
+        surface.drop_unused(exec)?;
     }
     Ok(surface)
 }
@@ -99,6 +102,7 @@ fn joined(runs: Vec<Made>, exec: &Exec) -> Result<DualSurface, ConvertError> {
         normals: Vec::with_capacity(normals),
         triangles: Vec::with_capacity(triangles),
         not_finite: 0,
+        held: 0,
     };
     for run in runs {
         exec.check()?;
@@ -109,6 +113,7 @@ fn joined(runs: Vec<Made>, exec: &Exec) -> Result<DualSurface, ConvertError> {
         let moved = |corners: &[u32; 3]| corners.map(|corner| corner.wrapping_add(shift));
         surface.triangles.extend(run.triangles.iter().map(moved));
         surface.not_finite += run.not_finite;
+        surface.held += run.held;
     }
     Ok(surface)
 }
@@ -120,33 +125,35 @@ fn check_count(vertices: usize) -> Result<(), ConvertError> {
     }
 }
 
-/// Takes away the vertices without triangles: those of cells at an open border, all of whose crossed edges lie on it.
-fn drop_unused(surface: &mut DualSurface, exec: &Exec) -> Result<(), ConvertError> {
-    let _memory = exec.reserve_elements(surface.positions.len() as u64, size_of::<u32>())?;
-    let mut number = vec![u32::MAX; surface.positions.len()];
-    for corners in surface.triangles.chunks(1 << 16) {
-        exec.check()?;
-        corners.as_flattened().iter().for_each(|&corner| number[corner as usize] = 0);
-    }
-    let mut kept = 0u32;
-    for at in 0..number.len() {
-        if number[at] == 0 {
-            number[at] = kept;
-            surface.positions[kept as usize] = surface.positions[at];
-            if let Some(normal) = surface.normals.get(at).copied() {
-                surface.normals[kept as usize] = normal;
+impl DualSurface {
+    /// Takes away the vertices without triangles: those of cells at an open border, all of whose crossed edges lie on it.
+    pub(crate) fn drop_unused(&mut self, exec: &Exec) -> Result<(), ConvertError> {
+        let _memory = exec.reserve_elements(self.positions.len() as u64, size_of::<u32>())?;
+        let mut number = vec![u32::MAX; self.positions.len()];
+        for corners in self.triangles.chunks(1 << 16) {
+            exec.check()?;
+            corners.as_flattened().iter().for_each(|&corner| number[corner as usize] = 0);
+        }
+        let mut kept = 0u32;
+        for at in 0..number.len() {
+            if number[at] == 0 {
+                number[at] = kept;
+                self.positions[kept as usize] = self.positions[at];
+                if let Some(normal) = self.normals.get(at).copied() {
+                    self.normals[kept as usize] = normal;
+                }
+                kept += 1;
             }
-            kept += 1;
         }
-    }
-    if (kept as usize) < number.len() {
-        surface.positions.truncate(kept as usize);
-        surface.normals.truncate(kept as usize);
-        for corner in surface.triangles.as_flattened_mut() {
-            *corner = number[*corner as usize];
+        if (kept as usize) < number.len() {
+            self.positions.truncate(kept as usize);
+            self.normals.truncate(kept as usize);
+            for corner in self.triangles.as_flattened_mut() {
+                *corner = number[*corner as usize];
+            }
         }
+        Ok(())
     }
-    Ok(())
 }
 
 /// How many samples are not finite.

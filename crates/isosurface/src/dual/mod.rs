@@ -21,7 +21,21 @@ pub(crate) trait VertexRule: Sync {
     const MEAN_WILL_DO: bool;
 
     /// The place of the vertex in the cell, from 0 to 1 in each direction, for the piece that crosses these edges, a bit each.
-    fn vertex(&self, cell: &Cell<'_>, edges: u16) -> DVec3;
+    fn vertex(&self, cell: &Cell<'_>, edges: u16) -> Placed;
+
+    /// The direction outward there, in lattice coordinates as a normal's.
+    fn outward(&self, cell: &Cell<'_>, edges: u16, place: DVec3) -> DVec3 {
+        cell.outward(edges, place)
+    }
+}
+
+/// Where a vertex lies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    /// The place in the cell, from 0 to 1 in each direction.
+    pub(crate) place: DVec3,
+    /// Whether it would have left the cell.
+    pub(crate) held: bool,
 }
 
 /// The mean of the crossings (Gibson 1998).
@@ -30,7 +44,7 @@ pub(crate) struct MeanOfCrossings;
 impl VertexRule for MeanOfCrossings {
     const MEAN_WILL_DO: bool = true;
 
-    fn vertex(&self, cell: &Cell<'_>, edges: u16) -> DVec3 {
-        cell.mean_of_crossings(edges)
+    fn vertex(&self, cell: &Cell<'_>, edges: u16) -> Placed {
+        Placed { place: cell.mean_of_crossings(edges), held: false }
     }
 }
