@@ -14,6 +14,7 @@ mod queries;
 mod rays;
 mod self_intersection;
 mod signed_distance;
+mod surface_nets;
 mod surface_queries;
 mod table;
 mod tessellate;
@@ -88,6 +89,9 @@ pub enum Task {
     Heightfield,
     /// The Delaunay triangulation of the points of pts2d.f64 (else of a formula).
     Delaunay2d,
+    /// Surface nets of vol_blend.f32 and vol_gyroid.f32 (else of a small volume of a formula).
+    #[value(name = "surfacenets")]
+    SurfaceNets,
 }
 
 impl Task {
@@ -121,6 +125,10 @@ impl Task {
                 names(&format!("j.closest_{size}"), &[".query", ".build+query", ".t1", ".tall"])
             }
             Self::Delaunay2d => vec!["k.delaunay2d_1m".into(), "k.delaunay2d_1m.f32".into()],
+            Self::SurfaceNets => {
+                let volume = if input.contains("blend") { "b.mc256_blend" } else { "b.mc256_gyroid" };
+                if input.contains(".f32: open") { vec![volume.into()] } else { Vec::new() }
+            }
             Self::SelfIntersection => vec!["j.self_intersection".into()],
             Self::Winding | Self::SignedDistance => {
                 let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
@@ -190,6 +198,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Onering => half_edges::sweep(&setting),
         Task::Heightfield => heightfield::run(&setting),
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
+        Task::SurfaceNets => surface_nets::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

@@ -7,6 +7,8 @@ use shapeloom_mesh::{
     TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
+use shapeloom_voxels::VoxelGrid;
+use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, SurfaceNets};
 
 use crate::registry::{Converter, Effect, entry};
 
@@ -15,6 +17,9 @@ pub fn catalog() -> Vec<Converter> {
     vec![
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
+        entry::<ManifoldSurfaceNets, VoxelGrid>(Effect::Reported),
+        entry::<SurfaceNets, VoxelGrid>(Effect::Reported),
+        entry::<DualContouring, VoxelGrid>(Effect::Reported),
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),

@@ -13,6 +13,17 @@ use crate::{Exec, Stop};
 /// A chunk size that suits cheap work on each element (a few nanoseconds).
 pub const CHUNK: usize = 4096;
 
+/// How many chunks can be worked on at the same time: for choosing between ways whose results are the same bits, never for sizes of
+/// chunks that results depend on.
+pub fn workers(exec: &Exec) -> usize {
+    #[cfg(feature = "rayon")]
+    if exec.threads() == Threads::Pool {
+        return rayon::current_num_threads();
+    }
+    let _ = exec;
+    1
+}
+
 fn range(index: usize, chunk: usize, len: usize) -> Range<usize> {
     index * chunk..((index + 1) * chunk).min(len)
 }

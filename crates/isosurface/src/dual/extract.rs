@@ -1,0 +1,170 @@
+//! A whole dual surface.
+
+use shapeloom_core::glam::{DMat3, DVec3};
+use shapeloom_core::parallel::{map_chunks, workers};
+use shapeloom_core::{Affine, ConvertError, Exec, Reservation};
+
+use super::VertexRule;
+use super::block::{Made, Plan, make};
+use super::sign_slice::{Frame, SignSlice};
+use crate::{Border, Level, Slabs};
+
+/// The vertices and triangles of a surface.
+#[derive(Default)]
+pub(crate) struct DualSurface {
+    pub(crate) positions: Vec<DVec3>,
+    /// Unit normals, if they were asked for.
+    pub(crate) normals: Vec<[f64; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// How many samples are not finite.
+    pub(crate) not_finite: u64,
+    /// How many vertices would have left their cells.
+    pub(crate) held: u64,
+}
+
+/// Layers of cells in a run of its own. Each run takes the signs of three more slices and the vertices of one more layer than it
+/// has, a tenth here; the result does not depend on it.
+const LAYERS: usize = 32;
+
+/// Makes the surface. Results are the same for any number of threads: each vertex is made from its cell alone, and numbers and order
+/// are those of the cells.
+pub(crate) fn extract<S: Slabs + ?Sized, R: VertexRule>(
+    slabs: &S,
+    rule: &R,
+    level: Level,
+    border: Border,
+    normals: bool,
+    exec: &Exec,
+) -> Result<DualSurface, ConvertError> {
+    let lattice = slabs.lattice();
+    let closed = border == Border::Closed;
+    if !closed && lattice.dimensions().contains(&1) {
+        return Ok(DualSurface { not_finite: not_finite(slabs, level, exec)?, ..DualSurface::default() });
+    }
+    let frame = Frame::new(lattice.dimensions(), closed);
+    let placement = *lattice.placement();
+    let cofactors = cofactors(&placement);
+    let plan = Plan { frame, level, placement, normals, cofactors };
+    let layers = frame.cells(2);
+    let mut surface = if workers(exec) > 1 && layers > LAYERS {
+        let all = layers.div_ceil(LAYERS);
+        let runs = map_chunks(exec, layers, LAYERS, |run| {
+            let part = |at: usize| at as f64 / all as f64 / LAYERS as f64;
+            let _memory = working_memory(&frame, exec)?;
+            make(slabs, rule, &plan, run.clone(), &exec.part(part(run.start), part(run.end)))
+        })?;
+        joined(runs, exec)?
+    } else {
+        exec.check()?;
+        let _memory = working_memory(&frame, exec)?;
+        let made = make(slabs, rule, &plan, 0..layers, exec)?;
+        DualSurface {
+            positions: made.positions,
+            normals: made.normals,
+            triangles: made.triangles,
+            not_finite: made.not_finite,
+            held: made.held,
+        }
+    };
+    if !closed {
+        surface.drop_unused(exec)?;
+    }
+    Ok(surface)
+}
+
+/// The matrix that maps normals, up to a positive factor: the cofactors of the map, scaled to neither overflow nor vanish.
+fn cofactors(placement: &Affine) -> DMat3 {
+    let steps = placement.linear;
+    let size = steps.x_axis.abs().max(steps.y_axis.abs()).max(steps.z_axis.abs()).max_element();
+    let [x, y, z] = [steps.x_axis, steps.y_axis, steps.z_axis].map(|column| column / size);
+    let sign = if placement.reverses_orientation() { -1.0 } else { 1.0 };
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
+}
+
+/// What a run needs beside its result: slabs that are not in memory, four slices of signs, two layers of cells.
+fn working_memory(frame: &Frame, exec: &Exec) -> Result<Reservation, ConvertError> {
+    let words = frame.slice_words() as u64;
+    let slab = frame.samples[0] as u64 * frame.samples[1] as u64;
+    Ok(exec.reserve((words * (4 * 8 + 2 * 20)).saturating_add(slab.saturating_mul(16)).saturating_add(1 << 14))?)
+}
+
+fn joined(runs: Vec<Made>, exec: &Exec) -> Result<DualSurface, ConvertError> {
+    let vertices: usize = runs.iter().map(|run| run.positions.len() - run.borrowed).sum();
+    let triangles: usize = runs.iter().map(|run| run.triangles.len()).sum();
+    check_count(vertices)?;
+    let normals = if runs.iter().any(|run| !run.normals.is_empty()) { vertices } else { 0 };
+    let _memory = [
+        exec.reserve_elements((vertices + normals) as u64, size_of::<DVec3>())?,
+        exec.reserve_elements(triangles as u64, size_of::<[u32; 3]>())?,
+    ];
+    let mut surface = DualSurface {
+        positions: Vec::with_capacity(vertices),
+        normals: Vec::with_capacity(normals),
+        triangles: Vec::with_capacity(triangles),
+        not_finite: 0,
+        held: 0,
+    };
+    for run in runs {
+        exec.check()?;
+        // Numbers of a run begin with the last of the run before.
+        let shift = (surface.positions.len() as u32).wrapping_sub(run.borrowed as u32);
+        surface.positions.extend_from_slice(&run.positions[run.borrowed..]);
+        surface.normals.extend(run.normals.iter().skip(run.borrowed));
+        let moved = |corners: &[u32; 3]| corners.map(|corner| corner.wrapping_add(shift));
+        surface.triangles.extend(run.triangles.iter().map(moved));
+        surface.not_finite += run.not_finite;
+        surface.held += run.held;
+    }
+    Ok(surface)
+}
+
+fn check_count(vertices: usize) -> Result<(), ConvertError> {
+    match u32::try_from(vertices) {
+        Ok(count) if count < u32::MAX => Ok(()),
+        _ => Err(shapeloom_mesh::MeshError::TooMany { kind: "vertices", found: vertices as u64 }.into()),
+    }
+}
+
+impl DualSurface {
+    /// Takes away the vertices without triangles: those of cells at an open border, all of whose crossed edges lie on it.
+    pub(crate) fn drop_unused(&mut self, exec: &Exec) -> Result<(), ConvertError> {
+        let _memory = exec.reserve_elements(self.positions.len() as u64, size_of::<u32>())?;
+        let mut number = vec![u32::MAX; self.positions.len()];
+        for corners in self.triangles.chunks(1 << 16) {
+            exec.check()?;
+            corners.as_flattened().iter().for_each(|&corner| number[corner as usize] = 0);
+        }
+        let mut kept = 0u32;
+        for at in 0..number.len() {
+            if number[at] == 0 {
+                number[at] = kept;
+                self.positions[kept as usize] = self.positions[at];
+                if let Some(normal) = self.normals.get(at).copied() {
+                    self.normals[kept as usize] = normal;
+                }
+                kept += 1;
+            }
+        }
+        if (kept as usize) < number.len() {
+            self.positions.truncate(kept as usize);
+            self.normals.truncate(kept as usize);
+            for corner in self.triangles.as_flattened_mut() {
+                *corner = number[*corner as usize];
+            }
+        }
+        Ok(())
+    }
+}
+
+/// How many samples are not finite.
+fn not_finite<S: Slabs + ?Sized>(slabs: &S, level: Level, exec: &Exec) -> Result<u64, ConvertError> {
+    let frame = Frame::new(slabs.lattice().dimensions(), true);
+    let _memory = working_memory(&frame, exec)?;
+    let (mut slice, mut buffer) = (SignSlice::default(), Vec::new());
+    let mut count = 0;
+    for k in 0..frame.samples[2] as u32 {
+        exec.check()?;
+        count += slice.fill(slabs.slab(k, &mut buffer)?, level, &frame);
+    }
+    Ok(count)
+}

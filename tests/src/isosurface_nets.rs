@@ -1,0 +1,337 @@
+//! Dual isosurfaces: manifold whatever the samples, oriented, and where they should be.
+
+use shapeloom::core::glam::{DMat3, DVec3};
+use shapeloom::core::{Affine, Convert, Converted, Deviation, Exec, Threads};
+use shapeloom::isosurface::{Border, InsideChoice, IsoValue, Lattice, ManifoldSurfaceNets};
+use shapeloom::judge::Topology;
+use shapeloom::mesh::{Domain, NORMAL, TriMesh};
+use shapeloom::voxels::{Quantity, Samples, VoxelGrid};
+
+use crate::support::Dice;
+
+fn grid(dimensions: [u32; 3], samples: Vec<f32>) -> VoxelGrid {
+    let lattice = Lattice::along_axes(dimensions, DVec3::ZERO, DVec3::ONE).expect("a lattice");
+    VoxelGrid::try_new(lattice, Samples::F32(samples), Quantity::SignedDistance).expect("as many as the lattice has")
+}
+
+fn on(placement: Affine, grid: &VoxelGrid) -> VoxelGrid {
+    let lattice = Lattice::try_new(grid.lattice().dimensions(), placement).expect("a lattice");
+    VoxelGrid::try_new(lattice, grid.samples().clone(), grid.quantity()).expect("as many as the lattice has")
+}
+
+fn nets(source: &VoxelGrid) -> Converted<TriMesh> {
+    ManifoldSurfaceNets::new().convert(source).expect("nets of finite samples")
+}
+
+fn is_inside(grid: &VoxelGrid, at: [i64; 3]) -> bool {
+    let dimensions = grid.lattice().dimensions();
+    let exists = (0..3).all(|axis| at[axis] >= 0 && at[axis] < i64::from(dimensions[axis]));
+    exists && grid.sample(at.map(|i| i as u32)) < 0.0
+}
+
+/// The Euler number of the surface. The inside, cut along the lattice, is a ball for each component of inside corners of a cell, a disc
+/// for each one of a face, a segment for each edge with an inside end: their numbers, with alternating signs, are that of the solid, and
+/// its border has twice that.
+///
+/// Corners are joined along edges alone, so two that are diagonal across a face are two discs; where both cells would have the two
+/// segments on that face in one piece they are joined to one.
+fn expected_euler(grid: &VoxelGrid) -> i64 {
+    let [nx, ny, nz] = grid.lattice().dimensions().map(i64::from);
+    let mut sum = 0;
+    for (k, j, i) in (-1..=nz).flat_map(|k| (-1..=ny).flat_map(move |j| (-1..=nx).map(move |i| (k, j, i)))) {
+        for axes in 0..8usize {
+            // The element of the lattice that runs from here along these axes.
+            let spans: Vec<usize> = (0..8).filter(|corner| corner & !axes == 0).collect();
+            let at = |c: usize| [i + (c & 1) as i64, j + (c >> 1 & 1) as i64, k + (c >> 2) as i64];
+            let inside: Vec<usize> = spans.into_iter().filter(|&corner| is_inside(grid, at(corner))).collect();
+            let mut name: Vec<usize> = (0..8).collect();
+            for &p in &inside {
+                for &q in inside.iter().filter(|&&q| (p ^ q).is_power_of_two()) {
+                    let (p, q) = (name[p], name[q]);
+                    name.iter_mut().filter(|name| **name == q).for_each(|name| *name = p);
+                }
+            }
+            let components = inside.iter().filter(|&&corner| name[corner] == corner).count() as i64;
+            sum += if axes.count_ones() % 2 == 1 { components } else { -components };
+        }
+    }
+    2 * (sum + double_faces(grid))
+}
+
+/// Checks everything that holds for a closed result.
+fn check_closed(mesh: &TriMesh, what: &str) -> Topology {
+    let topology = Topology::of(mesh, &Exec::default()).expect("a mesh of finite size");
+    assert!(topology.boundary.edges().is_empty(), "{what}: open edges");
+    assert!(topology.non_manifold_edges.is_empty(), "{what}: {:?}", topology.non_manifold_edges);
+    assert!(topology.non_manifold_vertices.is_empty(), "{what}: {:?}", topology.non_manifold_vertices);
+    assert!(topology.inconsistent_edges.is_empty() && topology.is_oriented(), "{what}: not oriented");
+    assert!(topology.isolated_vertices.is_empty(), "{what}: vertices without triangles");
+    assert!(topology.repeating_faces.is_empty() && topology.duplicate_faces.is_empty(), "{what}: odd faces");
+    topology
+}
+
+/// How many faces between two cells have inside corners diagonal that a path of edges joins in both cells.
+fn double_faces(grid: &VoxelGrid) -> i64 {
+    let [nx, ny, nz] = grid.lattice().dimensions().map(i64::from);
+    let mut count = 0;
+    for axis in 0..3 {
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        for k in -1..=nz {
+            for j in -1..=ny {
+                for i in -1..=nx {
+                    let step = |corner: [i64; 3], axis: usize, by: i64| {
+                        let mut moved = corner;
+                        moved[axis] += by;
+                        moved
+                    };
+                    let p = [i, j, k];
+                    let (q, s) = (step(p, b, 1), step(p, c, 1));
+                    let r = step(q, c, 1);
+                    let [ip, iq, ir, is] = [p, q, r, s].map(|at| is_inside(grid, at));
+                    if !(ip == ir && iq == is && ip != iq) {
+                        continue;
+                    }
+                    // Double on a side: the four samples there join the two inside ones by a path of edges.
+                    let double = |by: i64| {
+                        let side = [p, q, r, s].map(|at| is_inside(grid, step(at, axis, by)));
+                        let (from, to) = if ip { (0, 2) } else { (1, 3) };
+                        let path = |way: usize| side[from] && side[to] && side[way];
+                        path((from + 1) % 4) || path((from + 3) % 4)
+                    };
+                    count += i64::from(double(1) && double(-1));
+                }
+            }
+        }
+    }
+    count
+}
+
+#[test]
+fn every_choice_of_eight_corners_is_manifold() {
+    for corners in 0..256u32 {
+        let samples = (0..8).map(|c| if corners >> c & 1 == 1 { -1.0 } else { 1.0 }).collect();
+        let source = grid([2; 3], samples);
+        let mesh = nets(&source).value;
+        let topology = check_closed(&mesh, &format!("{corners:08b}"));
+        assert_eq!(topology.euler_characteristic(), expected_euler(&source), "{corners:08b}");
+        assert!(mesh.volume() >= 0.0, "{corners:08b}");
+    }
+}
+
+/// Every pattern of 4 x 4 x 2 random signs and larger, so that cells with double faces meet.
+#[test]
+fn random_signs_are_manifold_and_have_the_right_euler_number() {
+    let mut dice = Dice(99);
+    let (mut tries, mut doubles) = (0, 0);
+    for _ in 0..6 {
+        for index in 0..125 {
+            let dimensions = [2 + index % 5, 2 + index / 5 % 5, 2 + index / 25];
+            let share = [0.2, 0.5, 0.75][dice.next() as usize % 3];
+            let samples: Vec<f32> = (0..dimensions.iter().product())
+                .map(|_| if dice.unit() < share { -1.0 - dice.unit() as f32 } else { dice.unit() as f32 })
+                .collect();
+            let source = grid(dimensions, samples);
+            let mesh = nets(&source).value;
+            let topology = check_closed(&mesh, &format!("{dimensions:?} {:?}", source.samples()));
+            doubles += double_faces(&source);
+            assert_eq!(topology.euler_characteristic(), expected_euler(&source), "{dimensions:?}");
+            tries += 1;
+        }
+    }
+    assert!(tries == 750 && doubles > 100, "{doubles}");
+}
+
+/// Larger noise, which crosses words and blocks of layers, mirrored, sheared, and on any number of threads.
+#[test]
+fn white_noise_is_manifold_however_it_is_placed_and_the_same_on_any_number_of_threads() {
+    let mut dice = Dice(5);
+    for dimensions in [[70u32, 9, 40], [5, 6, 97], [130, 4, 35]] {
+        let samples = (0..dimensions.iter().product()).map(|_| dice.unit() as f32 - 0.5).collect();
+        let source = grid(dimensions, samples);
+        let shear = Affine {
+            linear: DMat3::from_cols(DVec3::new(-0.5, 0.1, 0.0), DVec3::new(0.3, 0.7, 0.1), DVec3::new(0.0, 0.2, 1.1)),
+            translation: DVec3::new(5e6, -3.0, 2.0),
+        };
+        for (placement, mirrors) in [(*source.lattice().placement(), false), (shear, true)] {
+            assert_eq!(placement.reverses_orientation(), mirrors);
+            let placed = on(placement, &source);
+            let nets = ManifoldSurfaceNets { normals: true, ..ManifoldSurfaceNets::new() };
+            let alone = nets.convert_with(&placed, &Exec::default().with_threads(Threads::Sequential));
+            let alone = alone.expect("nets of noise");
+            check_closed(&alone.value, &format!("{dimensions:?}"));
+            assert!(alone.value.volume() > 0.0);
+            for threads in [1, 2, 3] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+                let found = pool.install(|| nets.convert(&placed)).expect("nets of noise");
+                assert!(found == alone, "{dimensions:?} on {threads} threads");
+            }
+        }
+    }
+}
+
+fn ball(side: u32, radius: f64) -> VoxelGrid {
+    let spacing = 2.0 / f64::from(side - 1);
+    let lattice = Lattice::along_axes([side; 3], DVec3::splat(-1.0), DVec3::splat(spacing)).expect("a lattice");
+    let center = DVec3::new(0.013, -0.021, 0.007);
+    let sample = |at: u64| (lattice.position(lattice.coordinates(at)).distance(center) - radius) as f32;
+    let samples = (0..lattice.samples()).map(sample).collect();
+    VoxelGrid::try_new(lattice, Samples::F32(samples), Quantity::SignedDistance).expect("as many as the lattice has")
+}
+
+#[test]
+fn area_and_volume_of_a_ball_converge_at_second_order() {
+    let radius = 0.7f64;
+    let (volume, area) =
+        (4.0 / 3.0 * std::f64::consts::PI * radius.powi(3), 4.0 * std::f64::consts::PI * radius.powi(2));
+    let errors = [20, 40, 80].map(|side| {
+        let converted = nets(&ball(side, radius));
+        let mesh = converted.value;
+        assert_eq!(check_closed(&mesh, "a ball").euler_characteristic(), 2);
+        [(mesh.volume() / volume - 1.0).abs(), (mesh.area() / area - 1.0).abs()]
+    });
+    for quantity in 0..2 {
+        let [coarse, middle, fine] = errors.map(|error| error[quantity]);
+        // Halving the cells divides the error by four; by three at least where it is not smooth.
+        assert!(coarse > 3.0 * middle && middle > 3.0 * fine && fine < 2e-3, "{errors:?}");
+    }
+}
+
+#[test]
+fn normals_of_a_ball_point_outward() {
+    let converter = ManifoldSurfaceNets { normals: true, ..ManifoldSurfaceNets::new() };
+    for mirror in [1.0, -1.0] {
+        let source = ball(32, 0.7);
+        let placement = Affine::from_scale(DVec3::new(2.0, mirror, 1.0)) * *source.lattice().placement();
+        let mesh = converter.convert(&on(placement, &source)).expect("a ball").value;
+        let normals = mesh.attribute(Domain::Vertex, NORMAL).expect("normals");
+        assert!(mesh.volume() > 0.0);
+        for (vertex, &position) in mesh.positions().iter().enumerate() {
+            let [x, y, z] = (position - placement.vector(DVec3::ZERO)).to_array();
+            let center = DVec3::new(0.013 * 2.0, -0.021 * mirror, 0.007);
+            let true_normal = (DVec3::new(x / 4.0, y, z) - center * DVec3::new(0.25, 1.0, 1.0)).normalize();
+            let normal = normals.vector(vertex);
+            assert!((normal.length() - 1.0).abs() < 1e-12 && normal.dot(true_normal) > 0.99, "{vertex}");
+        }
+    }
+}
+
+/// A full lattice is cut off at its border: the box of the samples, exactly.
+#[test]
+fn full_lattices_give_their_box_and_thin_ones_are_closed() {
+    for dimensions in [[4u32, 3, 5], [64, 2, 3], [63, 2, 2], [62, 3, 2]] {
+        let count: u32 = dimensions.iter().product();
+        for value in [-1.0, -3e38, -1e-40] {
+            let mesh = nets(&grid(dimensions, vec![value; count as usize])).value;
+            assert_eq!(check_closed(&mesh, "a full lattice").euler_characteristic(), 2);
+            let [x, y, z] = dimensions.map(|count| f64::from(count - 1));
+            // Edges and corners of the box are vertices, so nothing is cut off.
+            assert!((mesh.volume() - x * y * z).abs() < 1e-12 * x * y * z, "{dimensions:?}: {}", mesh.volume());
+            assert!((mesh.area() - 2.0 * (x * y + y * z + z * x)).abs() < 1e-11 * x * y, "{dimensions:?}");
+        }
+    }
+    for dimensions in [[1u32, 1, 1], [1, 5, 4], [3, 1, 4], [4, 3, 1], [1, 70, 1], [70, 1, 1], [1, 1, 70]] {
+        let mut dice = Dice(8);
+        let samples = (0..dimensions.iter().product()).map(|_| if dice.unit() < 0.7 { -1.0 } else { 1.0 }).collect();
+        let source = grid(dimensions, samples);
+        let mesh = nets(&source).value;
+        let topology = check_closed(&mesh, &format!("{dimensions:?}"));
+        assert_eq!(topology.euler_characteristic(), expected_euler(&source));
+        let open = ManifoldSurfaceNets { border: Border::Open, ..ManifoldSurfaceNets::new() };
+        let converted = open.convert(&source).expect("nothing");
+        assert!(converted.value.triangles().is_empty());
+        assert!(converted.report.findings.iter().any(|finding| finding.code == "W-iso-empty"));
+    }
+}
+
+#[test]
+fn open_borders_have_no_quads_beyond_and_no_stray_vertices() {
+    let mut dice = Dice(21);
+    let open = ManifoldSurfaceNets { border: Border::Open, normals: true, ..ManifoldSurfaceNets::new() };
+    for _ in 0..60 {
+        let dimensions = [0; 3].map(|_| 2 + dice.next() as u32 % 5);
+        let samples: Vec<f32> = (0..dimensions.iter().product()).map(|_| dice.unit() as f32 - 0.4).collect();
+        let source = grid(dimensions, samples);
+        let mesh = open.convert(&source).expect("an open surface").value;
+        // By definition: edges inside the lattice, two triangles each.
+        let mut expected = 0;
+        for (axis, along) in [[1i64, 0, 0], [0, 1, 0], [0, 0, 1]].into_iter().enumerate() {
+            for at in 0..source.lattice().samples() {
+                let p = source.lattice().coordinates(at).map(i64::from);
+                let q = [p[0] + along[0], p[1] + along[1], p[2] + along[2]];
+                let within = (0..3).all(|other| {
+                    let last = i64::from(dimensions[other]) - 1;
+                    if other == axis { q[other] <= last } else { p[other] > 0 && p[other] < last }
+                });
+                expected += usize::from(within && is_inside(&source, p) != is_inside(&source, q));
+            }
+        }
+        assert_eq!(mesh.triangles().len(), 2 * expected);
+        let topology = Topology::of(&mesh, &Exec::default()).expect("a small mesh");
+        assert!(topology.isolated_vertices.is_empty() && topology.non_manifold_edges.is_empty());
+        assert!(topology.inconsistent_edges.is_empty());
+    }
+}
+
+#[test]
+fn grids_of_any_width_give_the_same_surface() {
+    let mut dice = Dice(77);
+    let lattice = Lattice::along_axes([9, 7, 8], DVec3::ONE, DVec3::new(0.5, 1.0, 2.0)).expect("a lattice");
+    let full: Vec<bool> = (0..lattice.samples()).map(|_| dice.unit() < 0.5).collect();
+    let mut words = vec![0u64; full.len().div_ceil(64)];
+    full.iter().enumerate().filter(|(_, full)| **full).for_each(|(i, _)| words[i / 64] |= 1 << (i % 64));
+    let each = [
+        Samples::F32(full.iter().map(|&full| f32::from(u8::from(full))).collect()),
+        Samples::U8(full.iter().map(|&full| u8::from(full)).collect()),
+        Samples::U16(full.iter().map(|&full| u16::from(full)).collect()),
+        Samples::Bits(words),
+    ];
+    let meshes = each.map(|samples| {
+        nets(&VoxelGrid::try_new(lattice, samples, Quantity::Occupancy).expect("as many as the lattice has"))
+    });
+    check_closed(&meshes[0].value, "occupancy");
+    assert!(meshes.iter().all(|mesh| *mesh == meshes[0]));
+}
+
+#[test]
+fn strange_samples_are_outside_and_told() {
+    let mut dice = Dice(13);
+    for strange in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3.2e38, -3.2e38] {
+        let samples: Vec<f32> =
+            (0..7 * 8 * 66).map(|_| if dice.unit() < 0.2 { strange } else { dice.unit() as f32 - 0.5 }).collect();
+        let count = samples.iter().filter(|sample| !sample.is_finite()).count() as u64;
+        let source = grid([66, 7, 8], samples.clone());
+        for normals in [false, true] {
+            let converter = ManifoldSurfaceNets { normals, ..ManifoldSurfaceNets::new() };
+            let Converted { value: mesh, report } = converter.convert(&source).expect("strange samples are taken");
+            check_closed(&mesh, &format!("{strange}"));
+            let told = report.findings.iter().find(|finding| finding.code == "W-iso-not-finite");
+            assert_eq!(told.map_or(0, |finding| finding.count), count, "{strange}");
+            assert_eq!(report.deviation == Deviation::Unknown, count > 0);
+            if count > 0 {
+                // The same surface as with outside samples in their place, but for where edges to them are crossed.
+                let outside = samples.iter().map(|&sample| if sample.is_finite() { sample } else { 1.0 }).collect();
+                assert_eq!(nets(&grid([66, 7, 8], outside)).value.triangles().len(), mesh.triangles().len());
+            }
+        }
+    }
+}
+
+#[test]
+fn iso_values_out_of_range_give_nothing_and_say_so() {
+    let source = ball(12, 0.7);
+    for (iso, inside, empty) in [
+        (-5.0, InsideChoice::Below, true),
+        (5.0, InsideChoice::Above, true),
+        (5.0, InsideChoice::Below, false),
+        (1e300, InsideChoice::Below, false),
+        (-1e300, InsideChoice::Below, true),
+    ] {
+        let converter = ManifoldSurfaceNets { iso: IsoValue::At(iso), inside, ..ManifoldSurfaceNets::new() };
+        let Converted { value: mesh, report } = converter.convert(&source).expect("nothing, or the whole lattice");
+        assert_eq!(mesh.triangles().is_empty(), empty, "{iso}");
+        assert_eq!(report.findings.iter().any(|finding| finding.code == "W-iso-empty"), empty, "{iso}");
+        if !empty {
+            assert!((mesh.volume() - 8.0).abs() < 1e-9, "{iso}: {}", mesh.volume());
+        }
+    }
+}
