@@ -4,15 +4,25 @@
 //! sampled fields and files larger than memory.
 
 mod border;
+mod cell_topology;
+mod cube_cycles;
 mod error;
 mod field_slabs;
-#[cfg(test)]
 mod inside_bits;
 mod iso_value;
 mod lattice;
+mod lattice_bits;
+mod lattice_vertices;
 mod level;
+mod marching;
+mod marching_cubes;
+mod marching_report;
+mod marching_tetrahedra;
 mod otsu;
+mod pattern;
+mod slab_window;
 mod slabs;
+mod trilinear_cell;
 
 pub use border::Border;
 pub use error::LatticeError;
@@ -20,5 +30,7 @@ pub use field_slabs::FieldSlabs;
 pub use iso_value::IsoValue;
 pub use lattice::Lattice;
 pub use level::{Inside, InsideChoice, Level};
+pub use marching_cubes::{MarchingCubes, Topology};
+pub use marching_tetrahedra::MarchingTetrahedra;
 pub use otsu::{Otsu, otsu_threshold};
 pub use slabs::Slabs;

@@ -1,0 +1,96 @@
+//! Which samples of a lattice are inside, a bit each.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use shapeloom_core::parallel::fill_chunks;
+use shapeloom_core::{ConvertError, Exec, Reservation};
+
+use crate::inside_bits::pack_row;
+use crate::{Border, Level, Slabs};
+
+/// How many slabs are packed at a time.
+const SLABS: usize = 4;
+
+/// How many samples lie between two looks whether to stop.
+const SAMPLES_PER_CHECK: usize = 1 << 20;
+
+/// Which samples are inside, in rows of whole words. Where the border is closed the lattice has a layer of outside samples around
+/// it: sample `i` of the lattice is then sample `i + 1` here.
+#[derive(Debug)]
+pub(crate) struct LatticeBits {
+    words: Vec<u64>,
+    words_per_row: usize,
+    /// The samples in each direction, with those around.
+    pub(crate) dimensions: [usize; 3],
+    /// The layers around the lattice: 0 or 1.
+    pub(crate) margin: usize,
+    /// How many samples are NaN or infinite.
+    pub(crate) not_finite: u64,
+    _memory: Reservation,
+}
+
+impl LatticeBits {
+    /// Reads every slab once.
+    pub(crate) fn read<S: Slabs + ?Sized>(
+        slabs: &S,
+        level: Level,
+        border: Border,
+        exec: &Exec,
+    ) -> Result<Self, ConvertError> {
+        let margin = usize::from(border == Border::Closed);
+        let [columns, rows, slab_count] = slabs.lattice().dimensions().map(|count| count as usize);
+        let dimensions = [columns, rows, slab_count].map(|count| count + 2 * margin);
+        let words_per_row = dimensions[0].div_ceil(64);
+        let slab_words = words_per_row as u64 * dimensions[1] as u64;
+        let memory = exec.reserve_elements(slab_words.saturating_mul(dimensions[2] as u64), 8)?;
+        let slab_words = slab_words as usize;
+        let mut words = vec![0u64; slab_words * dimensions[2]];
+        let not_finite = AtomicU64::new(0);
+        fill_chunks(exec, &mut words, SLABS * slab_words, |first, part| {
+            let mut buffer = Vec::new();
+            let mut strange = 0;
+            for (at, part) in part.chunks_mut(slab_words).enumerate() {
+                let Some(k) = (first / slab_words + at).checked_sub(margin).filter(|&k| k < slab_count) else {
+                    continue;
+                };
+                exec.progress(0.3 * k as f64 / slab_count as f64);
+                let slab = slabs.slab(k as u32, &mut buffer)?;
+                let packed = part[margin * words_per_row..].chunks_mut(words_per_row);
+                for (j, (row, samples)) in packed.zip(slab.chunks(columns)).enumerate() {
+                    strange += pack_row(samples, level, row) as u64;
+                    if margin == 1 {
+                        shift_up(row);
+                    }
+                    if (j + 1) % (SAMPLES_PER_CHECK / columns).max(1) == 0 {
+                        exec.check()?;
+                    }
+                }
+            }
+            not_finite.fetch_add(strange, Ordering::Relaxed);
+            Ok::<(), ConvertError>(())
+        })?;
+        let not_finite = not_finite.into_inner();
+        Ok(Self { words, words_per_row, dimensions, margin, not_finite, _memory: memory })
+    }
+
+    /// The row of samples `(.., j, k)`.
+    pub(crate) fn row(&self, j: usize, k: usize) -> &[u64] {
+        let start = (k * self.dimensions[1] + j) * self.words_per_row;
+        &self.words[start..start + self.words_per_row]
+    }
+
+    /// The memory that the bits take, in bytes.
+    pub(crate) fn memory_bytes(&self) -> usize {
+        size_of_val(self.words.as_slice())
+    }
+}
+
+/// Moves each bit to the next place.
+fn shift_up(row: &mut [u64]) {
+    let mut carry = 0;
+    for word in row {
+        let next = *word >> 63;
+        *word = *word << 1 | carry;
+        carry = next;
+    }
+}
