@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use multiversion::multiversion;
 use shapeloom_core::parallel::fill_chunks;
 use shapeloom_core::{ConvertError, Exec, Reservation};
 
@@ -55,15 +56,11 @@ impl LatticeBits {
                 };
                 exec.progress(0.3 * k as f64 / slab_count as f64);
                 let slab = slabs.slab(k as u32, &mut buffer)?;
-                let packed = part[margin * words_per_row..].chunks_mut(words_per_row);
-                for (j, (row, samples)) in packed.zip(slab.chunks(columns)).enumerate() {
-                    strange += pack_row(samples, level, row) as u64;
-                    if margin == 1 {
-                        shift_up(row);
-                    }
-                    if (j + 1) % (SAMPLES_PER_CHECK / columns).max(1) == 0 {
-                        exec.check()?;
-                    }
+                let at_once = (SAMPLES_PER_CHECK / columns).max(1);
+                let packed = part[margin * words_per_row..].chunks_mut(at_once * words_per_row);
+                for (words, samples) in packed.zip(slab.chunks(at_once * columns)) {
+                    exec.check()?;
+                    strange += pack_rows(samples, columns, level, words, (words_per_row, margin));
                 }
             }
             not_finite.fetch_add(strange, Ordering::Relaxed);
@@ -83,6 +80,25 @@ impl LatticeBits {
     pub(crate) fn memory_bytes(&self) -> usize {
         size_of_val(self.words.as_slice())
     }
+}
+
+/// Packs rows of samples, moves their bits up by the margin, and returns how many samples are not finite.
+#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
+fn pack_rows(
+    samples: &[f32],
+    columns: usize,
+    level: Level,
+    words: &mut [u64],
+    (words_per_row, margin): (usize, usize),
+) -> u64 {
+    let mut not_finite = 0;
+    for (samples, row) in samples.chunks(columns).zip(words.chunks_mut(words_per_row)) {
+        not_finite += pack_row(samples, level, row).not_finite as u64;
+        if margin == 1 {
+            shift_up(row);
+        }
+    }
+    not_finite
 }
 
 /// Moves each bit to the next place.
