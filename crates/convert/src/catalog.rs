@@ -7,6 +7,8 @@ use shapeloom_mesh::{
     TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
+use shapeloom_voxels::VoxelGrid;
+use shapeloom_voxels::isosurface::{MarchingCubes, MarchingTetrahedra};
 
 use crate::registry::{Converter, Effect, entry};
 
@@ -18,6 +20,8 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<MarchingCubes, VoxelGrid>(Effect::Reported),
+        entry::<MarchingTetrahedra, VoxelGrid>(Effect::Reported),
         entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
         entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),

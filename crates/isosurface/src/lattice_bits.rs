@@ -1,13 +1,14 @@
 //! Which samples of a lattice are inside, a bit each.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use multiversion::multiversion;
 use shapeloom_core::parallel::fill_chunks;
-use shapeloom_core::{ConvertError, Exec, Reservation};
+use shapeloom_core::{ConvertError, Exec, OverBudget, Reservation};
 
 use crate::inside_bits::pack_row;
-use crate::{Border, Level, Slabs};
+use crate::{Border, Lattice, Level, Slabs};
 
 /// How many slabs are packed at a time.
 const SLABS: usize = 4;
@@ -31,46 +32,52 @@ pub(crate) struct LatticeBits {
 }
 
 impl LatticeBits {
-    /// Reads every slab once.
+    /// Room for the bits of a lattice.
+    pub(crate) fn new(lattice: &Lattice, border: Border, exec: &Exec) -> Result<Self, OverBudget> {
+        let margin = usize::from(border == Border::Closed);
+        let dimensions = lattice.dimensions().map(|count| count as usize + 2 * margin);
+        let words_per_row = dimensions[0].div_ceil(64);
+        let words = (words_per_row as u64 * dimensions[1] as u64).saturating_mul(dimensions[2] as u64);
+        let memory = exec.reserve_elements(words, 8)?;
+        let words = vec![0u64; words as usize];
+        Ok(Self { words, words_per_row, dimensions, margin, not_finite: 0, _memory: memory })
+    }
+
+    /// Reads planes, counted with the margin.
     pub(crate) fn read<S: Slabs + ?Sized>(
+        &mut self,
         slabs: &S,
         level: Level,
-        border: Border,
+        planes: Range<usize>,
         exec: &Exec,
-    ) -> Result<Self, ConvertError> {
-        let margin = usize::from(border == Border::Closed);
-        let [columns, rows, slab_count] = slabs.lattice().dimensions().map(|count| count as usize);
-        let dimensions = [columns, rows, slab_count].map(|count| count + 2 * margin);
-        let words_per_row = dimensions[0].div_ceil(64);
-        let slab_words = words_per_row as u64 * dimensions[1] as u64;
-        let memory = exec.reserve_elements(slab_words.saturating_mul(dimensions[2] as u64), 8)?;
-        let slab_words = slab_words as usize;
-        let mut words = vec![0u64; slab_words * dimensions[2]];
+    ) -> Result<(), ConvertError> {
+        let [columns, _, slab_count] = slabs.lattice().dimensions().map(|count| count as usize);
+        let (margin, words_per_row) = (self.margin, self.words_per_row);
+        let slab_words = words_per_row * self.dimensions[1];
         let not_finite = AtomicU64::new(0);
-        fill_chunks(exec, &mut words, SLABS * slab_words, |first, part| {
+        let words = &mut self.words[planes.start * slab_words..planes.end * slab_words];
+        fill_chunks(exec, words, SLABS * slab_words, |first, part| {
             let mut buffer = Vec::new();
-            let mut strange = 0;
             for (at, part) in part.chunks_mut(slab_words).enumerate() {
-                let Some(k) = (first / slab_words + at).checked_sub(margin).filter(|&k| k < slab_count) else {
-                    continue;
-                };
-                exec.progress(0.3 * k as f64 / slab_count as f64);
+                let plane = planes.start + first / slab_words + at;
+                let Some(k) = plane.checked_sub(margin).filter(|&k| k < slab_count) else { continue };
                 let slab = slabs.slab(k as u32, &mut buffer)?;
                 let at_once = (SAMPLES_PER_CHECK / columns).max(1);
                 let packed = part[margin * words_per_row..].chunks_mut(at_once * words_per_row);
                 for (words, samples) in packed.zip(slab.chunks(at_once * columns)) {
                     exec.check()?;
-                    strange += pack_rows(samples, columns, level, words, (words_per_row, margin));
+                    let strange = pack_rows(samples, columns, level, words, (words_per_row, margin));
+                    not_finite.fetch_add(strange, Ordering::Relaxed);
                 }
             }
-            not_finite.fetch_add(strange, Ordering::Relaxed);
             Ok::<(), ConvertError>(())
         })?;
-        let not_finite = not_finite.into_inner();
-        Ok(Self { words, words_per_row, dimensions, margin, not_finite, _memory: memory })
+        self.not_finite += not_finite.into_inner();
+        Ok(())
     }
 
     /// The row of samples `(.., j, k)`.
+    #[inline(always)]
     pub(crate) fn row(&self, j: usize, k: usize) -> &[u64] {
         let start = (k * self.dimensions[1] + j) * self.words_per_row;
         &self.words[start..start + self.words_per_row]

@@ -35,6 +35,7 @@ impl Site {
     }
 
     /// The outward normal for a gradient, or for a direction from inside to outside where there is none.
+    #[inline(always)]
     pub(crate) fn normal(&self, gradient: DVec3, otherwise: DVec3) -> [f64; 3] {
         let unit = |gradient: DVec3| {
             let largest = gradient.abs().max_element();
@@ -75,16 +76,32 @@ impl<'a> Samples<'a> {
     pub(crate) fn gradient(&self, i: usize, j: usize, above: usize) -> DVec3 {
         let at = j * self.columns + i;
         let Some(slab) = self.slabs[1 + above] else { return DVec3::ZERO };
-        let between = |low: Option<f32>, high: Option<f32>| {
-            let own = slab[at];
-            let steps = f64::from(u8::from(low.is_some()) + u8::from(high.is_some())).max(1.0);
-            (f64::from(high.unwrap_or(own)) - f64::from(low.unwrap_or(own))) / steps
-        };
         let columns = self.columns;
-        let x = between((i > 0).then(|| slab[at - 1]), (i + 1 < columns).then(|| slab[at + 1]));
-        let y = between((j > 0).then(|| slab[at - columns]), (j + 1 < self.rows).then(|| slab[at + columns]));
-        let z = between(self.slabs[above].map(|slab| slab[at]), self.slabs[2 + above].map(|slab| slab[at]));
+        let own = slab[at];
+        let x = difference(
+            if i > 0 { Some(slab[at - 1]) } else { None },
+            own,
+            if i + 1 < columns { Some(slab[at + 1]) } else { None },
+        );
+        let y = difference(
+            if j > 0 { Some(slab[at - columns]) } else { None },
+            own,
+            if j + 1 < self.rows { Some(slab[at + columns]) } else { None },
+        );
+        let slab = |place: usize| if let Some(slab) = self.slabs[place] { Some(slab[at]) } else { None };
+        let z = difference(slab(above), own, slab(2 + above));
         DVec3::new(x, y, z)
+    }
+}
+
+/// The slope at the middle one of three samples, of which the first and the last may be missing.
+#[inline(always)]
+fn difference(low: Option<f32>, own: f32, high: Option<f32>) -> f64 {
+    match (low, high) {
+        (Some(low), Some(high)) => (f64::from(high) - f64::from(low)) * 0.5,
+        (None, Some(high)) => f64::from(high) - f64::from(own),
+        (Some(low), None) => f64::from(own) - f64::from(low),
+        (None, None) => 0.0,
     }
 }
 
@@ -111,7 +128,7 @@ pub(crate) fn bits_below(count: usize, w: usize) -> u64 {
 /// The word in which each bit is the next one of a row.
 #[inline(always)]
 pub(crate) fn next_bits(row: &[u64], w: usize) -> u64 {
-    row[w] >> 1 | row.get(w + 1).map_or(0, |word| word << 63)
+    row[w] >> 1 | if w + 1 < row.len() { row[w + 1] << 63 } else { 0 }
 }
 
 impl EdgeRow<'_> {
@@ -126,7 +143,11 @@ impl EdgeRow<'_> {
 
     #[inline(always)]
     pub(crate) fn count(&self, direction: u8) -> u32 {
-        (0..self.own.len()).map(|w| self.crossed(direction, w).count_ones()).sum()
+        let mut count = 0;
+        for w in 0..self.own.len() {
+            count += self.crossed(direction, w).count_ones();
+        }
+        count
     }
 
     /// Writes the vertices of a row of edges that start at samples `(.., j, k)`, counted with the margin.
@@ -156,13 +177,16 @@ impl EdgeRow<'_> {
                 let ends = (from.get(column), to.get(column.wrapping_add(dx)));
                 let (position, gradient) = if let (Some(&a), Some(&b)) = ends {
                     let part = site.level.crossing(a, b);
-                    let along = |start: usize, step: usize| start as f64 + if step == 1 { part } else { 0.0 };
-                    let position = site.place(along(column, dx), along(row, dy), along(slab, dz));
-                    let gradient = normals.is_some().then(|| {
+                    let x = if dx == 1 { column as f64 + part } else { column as f64 };
+                    let y = if dy == 1 { row as f64 + part } else { row as f64 };
+                    let z = if dz == 1 { slab as f64 + part } else { slab as f64 };
+                    let position = site.place(x, y, z);
+                    let mut gradient = DVec3::ZERO;
+                    if normals.is_some() {
                         let start = samples.gradient(column, row, 0);
                         let end = samples.gradient(column + dx, row + dy, dz);
-                        start + (end - start) * part
-                    });
+                        gradient = start + (end - start) * part;
+                    }
                     (position, gradient)
                 } else {
                     // Of an edge to the margin the end that is inside.
@@ -170,10 +194,10 @@ impl EdgeRow<'_> {
                         true => [column, row, slab],
                         false => [column.wrapping_add(dx), row.wrapping_add(dy), slab.wrapping_add(dz)],
                     };
-                    (site.place(x as f64, y as f64, z as f64), Some(DVec3::ZERO))
+                    (site.place(x as f64, y as f64, z as f64), DVec3::ZERO)
                 };
                 positions[at] = position;
-                if let (Some(normals), Some(gradient)) = (normals.as_deref_mut(), gradient) {
+                if let Some(normals) = &mut normals {
                     let along = DVec3::new(dx as f64, dy as f64, dz as f64);
                     normals[at] = site.normal(gradient, if starts_inside { along } else { -along });
                 }

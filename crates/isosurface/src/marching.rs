@@ -4,6 +4,8 @@
 //! many triangles each layer of cells has, hence the numbers of all vertices. Then blocks of layers write their vertices and
 //! triangles, at the same time, to where they belong.
 
+use std::ops::Range;
+
 use multiversion::multiversion;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::{fill_chunks, map_chunks};
@@ -18,7 +20,15 @@ use crate::slab_window::SlabWindow;
 use crate::{Level, Slabs};
 
 /// How many layers of cells make a block. Larger ones leave less to do at the same time, smaller ones read more slabs twice.
-const LAYERS: usize = 8;
+const LAYERS: usize = 4;
+
+/// How many samples a wave has, about: those of smaller ones are nearer when they are looked at again, larger ones have more
+/// to do at the same time.
+const WAVE_SAMPLES: usize = 1 << 20;
+
+/// The planes of a wave: enough for four blocks, and so many that small lattices have few waves.
+const LEAST_WAVE: usize = 16;
+const MOST_WAVE: usize = 256;
 
 /// Vertices and triangles, as they become a mesh.
 #[derive(Debug, Default)]
@@ -43,7 +53,7 @@ struct Row<const D: usize> {
 pub(crate) struct Marching<'a, S: ?Sized, const D: usize, const C: usize> {
     pub(crate) slabs: &'a S,
     pub(crate) level: Level,
-    pub(crate) bits: &'a LatticeBits,
+    pub(crate) bits: LatticeBits,
     pub(crate) pattern: &'static Pattern<D, C>,
     /// Cells whose topology the samples decide; none where the pattern decides all.
     pub(crate) topology: Option<CellTopology>,
@@ -73,11 +83,12 @@ struct Layer<'a, const D: usize, const C: usize> {
 /// Calls `visit` for the cells of a row that the surface goes through, with their place and which corners are inside.
 #[inline(always)]
 fn visit_cells(bits: &LatticeBits, j: usize, k: usize, mut visit: impl FnMut(usize, u8)) {
-    let rows = [bits.row(j, k), bits.row(j + 1, k), bits.row(j, k + 1), bits.row(j + 1, k + 1)];
+    let [a, b, c, d] = [bits.row(j, k), bits.row(j + 1, k), bits.row(j, k + 1), bits.row(j + 1, k + 1)];
     let cells = bits.dimensions[0] - 1;
-    for w in 0..rows[0].len() {
-        let left = rows.map(|row| row[w]);
-        let right = rows.map(|row| next_bits(row, w));
+    // Closures and adapters are not compiled for the wider vectors of the caller, so none here.
+    for w in 0..a.len() {
+        let left = [a[w], b[w], c[w], d[w]];
+        let right = [next_bits(a, w), next_bits(b, w), next_bits(c, w), next_bits(d, w)];
         let any = left[0] | left[1] | left[2] | left[3] | right[0] | right[1] | right[2] | right[3];
         let all = left[0] & left[1] & left[2] & left[3] & right[0] & right[1] & right[2] & right[3];
         let mut active = any & !all & bits_below(cells, w);
@@ -98,7 +109,7 @@ fn visit_cells(bits: &LatticeBits, j: usize, k: usize, mut visit: impl FnMut(usi
 fn edge_row(bits: &LatticeBits, direction: u8, j: usize, k: usize) -> Option<EdgeRow<'_>> {
     let (y, z) = (j + usize::from(direction >> 1 & 1), k + usize::from(direction >> 2));
     let [columns, rows, slabs] = bits.dimensions;
-    (y < rows && z < slabs).then(|| EdgeRow { own: bits.row(j, k), other: bits.row(y, z), columns })
+    if y < rows && z < slabs { Some(EdgeRow { own: bits.row(j, k), other: bits.row(y, z), columns }) } else { None }
 }
 
 /// Counts the crossed edges of each row of a plane.
@@ -106,7 +117,9 @@ fn edge_row(bits: &LatticeBits, direction: u8, j: usize, k: usize) -> Option<Edg
 fn count_edges<const D: usize>(bits: &LatticeBits, directions: &[u8; D], k: usize, rows: &mut [Row<D>]) {
     for (j, row) in rows.iter_mut().enumerate() {
         for (count, &direction) in row.edges.iter_mut().zip(directions) {
-            *count = edge_row(bits, direction, j, k).map_or(0, |edges| edges.count(direction));
+            if let Some(edges) = edge_row(bits, direction, j, k) {
+                *count = edges.count(direction);
+            }
         }
     }
 }
@@ -169,8 +182,9 @@ impl<const D: usize, const C: usize> Layer<'_, D, C> {
                 }
                 let numbers = numbers.as_flattened();
                 let triangles = self.pattern.triangles(mask);
-                for (out, triangle) in out[at..at + triangles.len()].iter_mut().zip(triangles) {
-                    *out = triangle.map(|place| numbers[place as usize % (2 * C)]);
+                for (out, &[a, b, c]) in out[at..at + triangles.len()].iter_mut().zip(triangles) {
+                    let (a, b, c) = (a as usize % (2 * C), b as usize % (2 * C), c as usize % (2 * C));
+                    *out = [numbers[a], numbers[b], numbers[c]];
                 }
                 at += triangles.len();
             });
@@ -205,63 +219,78 @@ fn write_vertices(
 }
 
 impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
-    /// Runs; the memory of the result stays reserved as long as `exec` is told by what is returned beside it.
-    pub(crate) fn run(&self, exec: &Exec) -> Result<Surface, ConvertError> {
+    /// Runs, a wave of planes after the other, so that samples are looked at again while they are near.
+    pub(crate) fn run(&mut self, exec: &Exec) -> Result<Surface, ConvertError> {
         let [_, row_count, planes] = self.bits.dimensions;
+        let mut surface = Surface { normals: self.normals.then(Vec::new), ..Surface::default() };
         if self.bits.dimensions.iter().any(|&count| count < 2) {
-            return Ok(Surface { normals: self.normals.then(Vec::new), ..Surface::default() });
+            self.bits.read(self.slabs, self.level, 0..planes, exec)?;
+            return Ok(surface);
         }
         let _of_rows = exec.reserve_elements((row_count * planes) as u64, size_of::<Row<D>>())?;
         let mut rows = vec![Row { edges: [0; D], inner: 0 }; row_count * planes];
-        let layers = self.count(&mut rows, &exec.part(0.3, 0.5))?;
-        let inner_vertices = rows.iter().map(|row| u64::from(row.inner)).sum();
-        let starts = number(&mut rows, row_count)?;
-        let triangles: u64 = layers.iter().sum();
-        let vertices = starts[planes];
-        if triangles.saturating_mul(3) >= u64::from(u32::MAX) {
-            return Err(MeshError::TooMany { kind: "wedges", found: triangles.saturating_mul(3) }.into());
+        let mut layers = vec![0; planes];
+        let mut starts = Vec::with_capacity(planes + 1);
+        let mut memory = Vec::new();
+        let (mut counted, mut written, mut vertices, mut triangles) = (0..0, 0..0, 0, 0);
+        let wave = (WAVE_SAMPLES / self.slabs.lattice().slab_len()).clamp(LEAST_WAVE, MOST_WAVE);
+        for first in (0..planes).step_by(wave) {
+            exec.progress(first as f64 / planes as f64);
+            let end = (first + wave).min(planes);
+            self.bits.read(self.slabs, self.level, first..end, exec)?;
+            // Edges reach to the next plane, and triangles to edges of the next plane.
+            counted = counted.end..if end == planes { planes } else { end - 1 };
+            self.count(counted.clone(), &mut rows, &mut layers, exec)?;
+            let of_planes = &mut rows[counted.start * row_count..counted.end * row_count];
+            vertices = number(of_planes, row_count, vertices, &mut starts)?;
+            surface.inner_vertices += of_planes.iter().map(|row| u64::from(row.inner)).sum::<u64>();
+            written = written.end..if end == planes { planes } else { counted.end - 1 };
+            triangles += layers[written.clone()].iter().sum::<u64>();
+            if triangles.saturating_mul(3) >= u64::from(u32::MAX) {
+                return Err(MeshError::TooMany { kind: "wedges", found: triangles.saturating_mul(3) }.into());
+            }
+            let known = starts.get(written.end).map_or(vertices, |&start| u64::from(start)) as usize;
+            let columns = if self.normals { 2 } else { 1 };
+            let more = (known - surface.positions.len()) as u64;
+            memory.push(exec.reserve_elements(more, columns * size_of::<DVec3>())?);
+            memory.push(exec.reserve_elements(triangles - surface.triangles.len() as u64, 12)?);
+            let mut blocks = surface.blocks(written.clone(), &starts, &layers, (known, triangles as usize));
+            fill_chunks(exec, &mut blocks, 1, |_, block| {
+                block.iter_mut().try_for_each(|block| self.write_block(block, &rows, &layers, exec))
+            })?;
         }
-        let columns = if self.normals { 2 } else { 1 };
-        let _of_vertices = exec.reserve_elements(u64::from(vertices), columns * size_of::<DVec3>())?;
-        let _of_triangles = exec.reserve_elements(triangles, 12)?;
-        let mut surface = Surface {
-            positions: vec![[0.0; 3]; vertices as usize],
-            normals: self.normals.then(|| vec![[0.0; 3]; vertices as usize]),
-            triangles: vec![[0; 3]; triangles as usize],
-            inner_vertices,
-            working_bytes: size_of_val(rows.as_slice()) as u64,
-        };
-        let mut blocks = blocks(&mut surface, &starts, &layers);
-        let exec = exec.part(0.5, 1.0);
-        fill_chunks(&exec, &mut blocks, 1, |number, block| {
-            exec.progress(number as f64 * LAYERS as f64 / planes as f64);
-            block.iter_mut().try_for_each(|block| self.write_block(block, &rows, &layers, &exec))
-        })?;
+        surface.working_bytes = size_of_val(rows.as_slice()) as u64;
         Ok(surface)
     }
 
     /// Counts crossed edges and inner vertices of each row, and triangles of each layer.
-    fn count(&self, rows: &mut [Row<D>], exec: &Exec) -> Result<Vec<u64>, ConvertError> {
-        let [_, row_count, planes] = self.bits.dimensions;
-        let mut counts: Vec<(&mut [Row<D>], u64)> = rows.chunks_mut(row_count).map(|rows| (rows, 0)).collect();
+    fn count(
+        &self,
+        planes: Range<usize>,
+        rows: &mut [Row<D>],
+        layers: &mut [u64],
+        exec: &Exec,
+    ) -> Result<(), ConvertError> {
+        let row_count = self.bits.dimensions[1];
+        let last = self.bits.dimensions[2] - 1;
+        let rows = rows[planes.start * row_count..planes.end * row_count].chunks_mut(row_count);
+        let mut counts: Vec<(&mut [Row<D>], &mut u64)> = rows.zip(&mut layers[planes.clone()]).collect();
         fill_chunks(exec, &mut counts, LAYERS, |first, part| {
-            exec.progress(first as f64 / planes as f64);
             let mut window = SlabWindow::new(self.slabs);
             for (k, (rows, triangles)) in part.iter_mut().enumerate() {
                 exec.check()?;
-                let k = first + k;
-                count_edges(self.bits, &self.pattern.directions, k, rows);
-                if k + 1 == planes {
+                let k = planes.start + first + k;
+                count_edges(&self.bits, &self.pattern.directions, k, rows);
+                if k == last {
                     continue;
                 }
-                match &self.topology {
-                    None => *triangles = count_triangles(self.bits, self.pattern, k),
-                    Some(topology) => *triangles = self.count_special(topology, k, rows, &mut window)?,
-                }
+                **triangles = match &self.topology {
+                    None => count_triangles(&self.bits, self.pattern, k),
+                    Some(topology) => self.count_special(topology, k, rows, &mut window)?,
+                };
             }
             Ok::<(), ConvertError>(())
-        })?;
-        Ok(counts.into_iter().map(|(_, triangles)| triangles).collect())
+        })
     }
 
     /// Calls `visit` with the samples around a layer of cells: beyond the two at it for gradients only.
@@ -301,7 +330,7 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
         let mut triangles = 0;
         self.with_samples(window, k, false, |samples| {
             for (j, row) in rows.iter_mut().enumerate().take(self.bits.dimensions[1] - 1) {
-                visit_cells(self.bits, j, k, |i, mask| {
+                visit_cells(&self.bits, j, k, |i, mask| {
                     let [own, inner] = topology.count(mask, || self.corners(samples, i, j));
                     triangles += u64::from(own);
                     row.inner += inner;
@@ -333,7 +362,7 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
         let mut triangles = 0;
         for k in block.first_layer..=block.last_plane {
             exec.check()?;
-            let layer = Layer { bits: self.bits, pattern: self.pattern, rows, k };
+            let layer = Layer { bits: &self.bits, pattern: self.pattern, rows, k };
             let room = triangles..triangles + layers[k] as usize;
             triangles = room.end;
             let out = &mut block.triangles[room];
@@ -421,7 +450,7 @@ impl Vertices<'_> {
                 if range.is_empty() {
                     continue;
                 }
-                if let Some(edges) = edge_row(marching.bits, direction, j, k) {
+                if let Some(edges) = edge_row(&marching.bits, direction, j, k) {
                     let normals = self.normals.as_deref_mut().map(|normals| &mut normals[range.clone()]);
                     let positions = &mut self.positions[range];
                     write_vertices(self.site, samples, (&edges, direction), [j, k], positions, normals);
@@ -448,10 +477,13 @@ impl Vertices<'_> {
     }
 }
 
-/// Makes counts numbers: those of the first vertices of each row. Returns the first of each plane, and the number of all.
-fn number<const D: usize>(rows: &mut [Row<D>], row_count: usize) -> Result<Vec<u32>, MeshError> {
-    let mut starts = Vec::with_capacity(rows.len() / row_count + 1);
-    let mut total = 0u64;
+/// Makes counts numbers, from `total` on: those of the first vertices of each row. Adds the first of each plane to `starts`.
+fn number<const D: usize>(
+    rows: &mut [Row<D>],
+    row_count: usize,
+    mut total: u64,
+    starts: &mut Vec<u32>,
+) -> Result<u64, MeshError> {
     for (at, row) in rows.iter_mut().enumerate() {
         if at % row_count == 0 {
             starts.push(total as u32);
@@ -462,32 +494,42 @@ fn number<const D: usize>(rows: &mut [Row<D>], row_count: usize) -> Result<Vec<u
             total += own;
         }
     }
-    starts.push(total as u32);
-    if total >= u64::from(u32::MAX) { Err(MeshError::TooMany { kind: "vertices", found: total }) } else { Ok(starts) }
+    if total >= u64::from(u32::MAX) { Err(MeshError::TooMany { kind: "vertices", found: total }) } else { Ok(total) }
 }
 
-/// Cuts a surface into what each block of layers writes.
-fn blocks<'a>(surface: &'a mut Surface, starts: &[u32], layers: &[u64]) -> Vec<Block<'a>> {
-    let planes = layers.len();
-    let mut positions = surface.positions.as_mut_slice();
-    let mut normals = surface.normals.as_deref_mut();
-    let mut triangles = surface.triangles.as_mut_slice();
-    let mut blocks = Vec::new();
-    for first_layer in (0..planes).step_by(LAYERS) {
-        let end = (first_layer + LAYERS).min(planes);
-        let vertices = (starts[end] - starts[first_layer]) as usize;
-        let faces = layers[first_layer..end].iter().sum::<u64>() as usize;
-        let own_positions = positions.split_off_mut(..vertices).unwrap_or_default();
-        let own_normals = normals.as_mut().and_then(|normals| normals.split_off_mut(..vertices));
-        let own_triangles = triangles.split_off_mut(..faces).unwrap_or_default();
-        blocks.push(Block {
-            first_layer,
-            last_plane: end - 1,
-            first_vertex: starts[first_layer],
-            positions: own_positions,
-            normals: own_normals,
-            triangles: own_triangles,
+impl Surface {
+    /// Makes room for so many vertices and triangles in all, and cuts what is new into what each block of layers writes.
+    fn blocks(
+        &mut self,
+        planes: Range<usize>,
+        starts: &[u32],
+        layers: &[u64],
+        (vertices, triangles): (usize, usize),
+    ) -> Vec<Block<'_>> {
+        let (first_vertex, first_triangle) = (self.positions.len(), self.triangles.len());
+        self.positions.resize(vertices, [0.0; 3]);
+        self.triangles.resize(triangles, [0; 3]);
+        let mut positions = &mut self.positions[first_vertex..];
+        let mut triangles = &mut self.triangles[first_triangle..];
+        let mut normals = self.normals.as_mut().map(|normals| {
+            normals.resize(vertices, [0.0; 3]);
+            &mut normals[first_vertex..]
         });
+        let mut blocks = Vec::new();
+        for first_layer in planes.clone().step_by(LAYERS) {
+            let end = (first_layer + LAYERS).min(planes.end);
+            let end_vertex = starts.get(end).map_or(vertices, |&start| start as usize);
+            let own = end_vertex - starts[first_layer] as usize;
+            let faces = layers[first_layer..end].iter().sum::<u64>() as usize;
+            blocks.push(Block {
+                first_layer,
+                last_plane: end - 1,
+                first_vertex: starts[first_layer],
+                positions: positions.split_off_mut(..own).unwrap_or_default(),
+                normals: normals.as_mut().and_then(|normals| normals.split_off_mut(..own)),
+                triangles: triangles.split_off_mut(..faces).unwrap_or_default(),
+            });
+        }
+        blocks
     }
-    blocks
 }

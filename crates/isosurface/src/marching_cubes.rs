@@ -69,14 +69,14 @@ impl<S: Slabs + ?Sized> Convert<S> for MarchingCubes {
     fn convert_with(&self, source: &S, exec: &Exec) -> Result<Converted<TriMesh>, ConvertError> {
         self.validate()?;
         let (level, how) = Level::settle(source, self.iso, self.inside, exec)?;
-        let bits = LatticeBits::read(source, level, self.border, exec)?;
+        let bits = LatticeBits::new(source.lattice(), self.border, exec)?;
         let mirrored = source.lattice().placement().reverses_orientation();
         let topology = (self.topology == Topology::Exact).then_some(CellTopology);
         let pattern = cube_pattern(mirrored);
         let normals = self.normals;
-        let marching = Marching { slabs: source, level, bits: &bits, pattern, topology, mirrored, normals };
+        let mut marching = Marching { slabs: source, level, bits, pattern, topology, mirrored, normals };
         let surface = marching.run(exec)?;
-        let mut report = told(Self::NAME, source, level, &how, &bits, &surface, exec)?;
+        let mut report = told(Self::NAME, source, level, &how, &marching.bits, &surface, exec)?;
         if topology.is_some() {
             report.figure("inner_vertices", surface.inner_vertices as f64);
         }

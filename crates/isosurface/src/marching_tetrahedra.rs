@@ -51,14 +51,14 @@ impl<S: Slabs + ?Sized> Convert<S> for MarchingTetrahedra {
     fn convert_with(&self, source: &S, exec: &Exec) -> Result<Converted<TriMesh>, ConvertError> {
         self.validate()?;
         let (level, how) = Level::settle(source, self.iso, self.inside, exec)?;
-        let bits = LatticeBits::read(source, level, self.border, exec)?;
+        let bits = LatticeBits::new(source.lattice(), self.border, exec)?;
         let mirrored = source.lattice().placement().reverses_orientation();
         let pattern = tetrahedra_pattern(mirrored);
         let normals = self.normals;
-        let marching = Marching { slabs: source, level, bits: &bits, pattern, topology: None, mirrored, normals };
+        let mut marching = Marching { slabs: source, level, bits, pattern, topology: None, mirrored, normals };
         let surface = marching.run(exec)?;
-        let mut report = told(Self::NAME, source, level, &how, &bits, &surface, exec)?;
-        let cubes = count_all(&bits, cube_pattern(false), exec)?;
+        let mut report = told(Self::NAME, source, level, &how, &marching.bits, &surface, exec)?;
+        let cubes = count_all(&marching.bits, cube_pattern(false), exec)?;
         report.figure("triangles_of_marching_cubes", cubes as f64);
         if cubes > 0 {
             report.figure("times_marching_cubes", surface.triangles.len() as f64 / cubes as f64);
