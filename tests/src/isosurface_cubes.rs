@@ -6,7 +6,7 @@ use shapeloom::core::{Affine, Convert, Deviation, Exec};
 use shapeloom::isosurface::{
     Border, InsideChoice, IsoValue, Lattice, MarchingCubes, MarchingTetrahedra, Topology as CellTopology,
 };
-use shapeloom::judge::{Measures, Topology};
+use shapeloom::judge::Topology;
 use shapeloom::mesh::{Domain, NORMAL, TriMesh};
 use shapeloom::voxels::{Quantity, Samples, VoxelGrid};
 
@@ -241,8 +241,14 @@ fn hard_cases_occur_with_a_tunnel_and_without() {
     let mut dice = Dice(5);
     for (case, masks) in HARD {
         let (mut with, mut without) = (0, 0);
-        for round in 0..4000 {
-            let corners = random_corners(&mut dice, masks[round % 2]);
+        for round in 0..6000 {
+            let mask = masks[round % 2];
+            let mut corners = random_corners(&mut dice, mask);
+            // A tunnel joins strong corners between weak ones.
+            let strong = [f64::from(u8::from(round % 4 < 2)), 2.0][usize::from(round % 3 == 0)];
+            for corner in corners.iter_mut().filter(|corner| f64::from(u8::from(**corner < 0.0)) == strong) {
+                *corner = f64::from((corner.signum() * (0.5 + 0.5 * corner.abs())) as f32);
+            }
             // Most have no tunnel: those are counted on the fine lattice now and then only.
             let found = of_mesh(&corners);
             let tunnel = found.euler < found.components as i64;
@@ -251,9 +257,10 @@ fn hard_cases_occur_with_a_tunnel_and_without() {
             }
             if let Some(wanted) = stable(&corners) {
                 assert_eq!(found, wanted, "case {case}: {corners:?}");
-                with += usize::from(tunnel);
                 without += usize::from(!tunnel);
             }
+            // The fine lattice may miss a thin tunnel, but it makes none up.
+            with += usize::from(tunnel && counted(&corners, 0.0) == found);
         }
         assert!(with > 0 && without > 0, "case {case}: {with} with a tunnel, {without} without");
     }
@@ -275,9 +282,8 @@ fn spheres_converge_at_second_order() {
         };
         let found = assert_sound(&mesh, &|| format!("a sphere of {cells} cells"));
         assert_eq!((found.components.len(), found.euler_characteristic()), (1, 2));
-        let measures = Measures::of(&mesh, &Exec::default()).expect("finite numbers");
         let pi = std::f64::consts::PI;
-        [(measures.area - 4.0 * pi).abs() / (4.0 * pi), (mesh.volume() - 4.0 * pi / 3.0).abs() / (4.0 * pi / 3.0)]
+        [(mesh.area() - 4.0 * pi).abs() / (4.0 * pi), (mesh.volume() - 4.0 * pi / 3.0).abs() / (4.0 * pi / 3.0)]
     };
     for tetrahedra in [false, true] {
         let (coarse, fine) = (error(16, tetrahedra), error(64, tetrahedra));
@@ -293,10 +299,10 @@ fn spheres_converge_at_second_order() {
 fn lattices_that_mirror_or_shear_have_outward_faces_and_normals() {
     let columns = [DVec3::new(-0.3, 0.1, 0.0), DVec3::new(0.05, 0.2, 0.1), DVec3::new(0.0, -0.1, 0.4)];
     for flip in [1.0, -1.0] {
-        let linear = DMat3::from_cols(columns[0] * flip, columns[1], columns[2]);
+        let linear = DMat3::from_cols(columns[0] * flip, columns[1], columns[2]) * 0.5;
         let placement = Affine { linear, translation: DVec3::new(5e6, -3.0, 1.0) };
-        let lattice = Lattice::try_new([24, 26, 22], placement).expect("three directions");
-        let center = lattice.position([12, 12, 11]);
+        let lattice = Lattice::try_new([28, 34, 24], placement).expect("three directions");
+        let center = lattice.position([14, 17, 12]);
         // An ellipsoid in space, so that normals are not those of the lattice.
         let value = |p: DVec3| (p - center).dot((p - center) * DVec3::new(1.0, 2.0, 0.7)) - 1.0;
         for sign in [1.0f32, -1.0] {
