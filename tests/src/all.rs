@@ -24,6 +24,7 @@ mod greedy_insertion;
 mod half_edges;
 mod harness;
 mod height_files;
+mod isosurface_cubes;
 mod isosurface_nets;
 mod laws;
 mod malformed;

@@ -9,6 +9,7 @@ mod files;
 mod half_edges;
 mod hausdorff;
 mod heightfield;
+mod isosurface;
 mod measure;
 mod queries;
 mod rays;
@@ -87,6 +88,8 @@ pub enum Task {
     Onering,
     /// A terrain made by formula to triangles: regular, and adaptive.
     Heightfield,
+    /// Isosurfaces of vol_blend.f32 and vol_gyroid.f32 (else of a formula).
+    Isosurface,
     /// The Delaunay triangulation of the points of pts2d.f64 (else of a formula).
     Delaunay2d,
     /// Surface nets of vol_blend.f32 and vol_gyroid.f32 (else of a small volume of a formula).
@@ -129,6 +132,8 @@ impl Task {
                 let volume = if input.contains("blend") { "b.mc256_blend" } else { "b.mc256_gyroid" };
                 if input.contains(".f32: open") { vec![volume.into()] } else { Vec::new() }
             }
+            Self::Isosurface if input.contains("blend") => vec!["b.mc256_blend".into()],
+            Self::Isosurface => vec!["b.mc256_gyroid".into()],
             Self::SelfIntersection => vec!["j.self_intersection".into()],
             Self::Winding | Self::SignedDistance => {
                 let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
@@ -197,6 +202,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Halfedge => half_edges::build(&setting).map(|outcome| vec![outcome]),
         Task::Onering => half_edges::sweep(&setting),
         Task::Heightfield => heightfield::run(&setting),
+        Task::Isosurface => isosurface::run(&setting),
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
         Task::SurfaceNets => surface_nets::run(&setting),
     };

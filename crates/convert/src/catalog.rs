@@ -9,6 +9,7 @@ use shapeloom_mesh::{
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
 use shapeloom_voxels::VoxelGrid;
 use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, SurfaceNets};
+use shapeloom_voxels::isosurface::{MarchingCubes, MarchingTetrahedra};
 
 use crate::registry::{Converter, Effect, entry};
 
@@ -23,6 +24,8 @@ pub fn catalog() -> Vec<Converter> {
         entry::<TriangulatePolygons, PolyMesh>(Effect::Reported),
         entry::<GreedyInsertion, HeightField>(Effect::WithinTolerance),
         entry::<TriangulateHeightField, HeightField>(Effect::Reported),
+        entry::<MarchingCubes, VoxelGrid>(Effect::Reported),
+        entry::<MarchingTetrahedra, VoxelGrid>(Effect::Reported),
         entry::<PlanarizeQuads, PolyMesh>(Effect::Reported),
         entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
         entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),

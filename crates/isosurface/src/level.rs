@@ -44,6 +44,12 @@ impl Level {
             }
     }
 
+    /// A sample less the iso value, with the sign that is negative inside.
+    pub(crate) fn depth(&self, sample: f32) -> f64 {
+        let above = f64::from(sample) - f64::from(self.iso);
+        if self.inside == Inside::Below { above } else { -above }
+    }
+
     /// Where between two samples, of which one is inside, their line reaches the iso value: 0 at `a`, 1 at `b`. In the middle
     /// where one is not finite.
     pub fn crossing(&self, a: f32, b: f32) -> f64 {

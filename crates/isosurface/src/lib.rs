@@ -4,6 +4,8 @@
 //! sampled fields and files larger than memory.
 
 mod border;
+mod cell_topology;
+mod cube_cycles;
 mod dual;
 mod dual_contouring;
 mod error;
@@ -11,13 +13,22 @@ mod field_slabs;
 mod inside_bits;
 mod iso_value;
 mod lattice;
+mod lattice_bits;
+mod lattice_vertices;
 mod level;
 mod manifold_surface_nets;
+mod marching;
+mod marching_cubes;
+mod marching_report;
+mod marching_tetrahedra;
 mod otsu;
+mod pattern;
 mod qef;
 mod result;
+mod slab_window;
 mod slabs;
 mod surface_nets;
+mod trilinear_cell;
 
 pub use border::Border;
 pub use dual_contouring::DualContouring;
@@ -27,6 +38,8 @@ pub use iso_value::IsoValue;
 pub use lattice::Lattice;
 pub use level::{Inside, InsideChoice, Level};
 pub use manifold_surface_nets::ManifoldSurfaceNets;
+pub use marching_cubes::{MarchingCubes, Topology};
+pub use marching_tetrahedra::MarchingTetrahedra;
 pub use otsu::{Otsu, otsu_threshold};
 pub use slabs::Slabs;
 pub use surface_nets::SurfaceNets;

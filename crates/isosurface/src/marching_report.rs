@@ -1,0 +1,47 @@
+//! What marching tells, and its surface as a mesh.
+
+use shapeloom_core::glam::DVec3;
+use shapeloom_core::{ConvertError, Deviation, Exec, Report};
+use shapeloom_mesh::{Blend, Column, Domain, MeshError, NORMAL, TransformRule, TriMesh, Values};
+
+use crate::lattice_bits::LatticeBits;
+use crate::marching::Surface;
+use crate::{Level, Slabs};
+
+/// The report on a surface.
+pub(crate) fn told<S: Slabs + ?Sized>(
+    name: &'static str,
+    slabs: &S,
+    level: Level,
+    how: &str,
+    bits: &LatticeBits,
+    surface: &Surface,
+    exec: &Exec,
+) -> Result<Report, ConvertError> {
+    let (deviation, basis) = match bits.not_finite {
+        0 => {
+            let bound = slabs.lattice().cell_diagonal();
+            (Deviation::AtMost(bound), "the diagonal of a cell, against the trilinear interpolant")
+        }
+        _ => (Deviation::Unknown, "samples that are not finite have no interpolant"),
+    };
+    let mut report = Report::new(name, deviation, format!("{how}; {basis}"));
+    report.figure("vertices", surface.positions.len() as f64);
+    report.figure("triangles", surface.triangles.len() as f64);
+    report.figure("working_bytes", (bits.memory_bytes() as u64 + surface.working_bytes) as f64);
+    level.tell(slabs, bits.not_finite, surface.triangles.len() as u64, &mut report, exec)?;
+    Ok(report)
+}
+
+/// The mesh.
+pub(crate) fn finish(surface: Surface) -> Result<TriMesh, MeshError> {
+    // In place: three numbers are a vector.
+    let positions = surface.positions.into_iter().map(DVec3::from_array).collect();
+    let mut mesh = TriMesh::try_new(positions, surface.triangles)?;
+    if let Some(normals) = surface.normals {
+        let column = Column::try_new(NORMAL, 3, Values::F64(normals.into_flattened()))?;
+        let column = column.with_blend(Blend::Direction).with_transform(TransformRule::Normal);
+        mesh.insert_attribute(Domain::Vertex, column)?;
+    }
+    Ok(mesh)
+}
