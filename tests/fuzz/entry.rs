@@ -1,7 +1,7 @@
 //! What fuzzing calls, shared with the mutation loop of the ordinary tests.
 
 use shapeloom::core::{Exec, Threads};
-use shapeloom::io::{ReadContext, WriteContext, WriteError, format_by_id, read, write};
+use shapeloom::io::{ReadContext, ReadOptions, ScalarType, WriteContext, WriteError, format_by_id, read, write};
 use shapeloom::shape::{Geometry, Shape};
 
 /// Reads an input as a format, under a budget of 64 MB and 40 times its size. What is read must be writable in the same
@@ -9,7 +9,12 @@ use shapeloom::shape::{Geometry, Shape};
 pub fn read_as(id: &str, input: &[u8]) -> bool {
     let format = format_by_id(id).expect("a format of the table");
     let exec = Exec::default().with_memory((64 << 20) + 40 * input.len() as u64).with_threads(Threads::Sequential);
-    let context = ReadContext { exec, ..ReadContext::named("fuzz") };
+    // What has no header needs one from outside.
+    let options = match id {
+        "raw" => ReadOptions { dimensions: "5x4x3".into(), scalar: ScalarType::I16, ..ReadOptions::new() },
+        _ => ReadOptions::new(),
+    };
+    let context = ReadContext { exec, options, ..ReadContext::named("fuzz") };
     let shape = match read(input, format, &context) {
         Ok(read) => {
             assert!(read.findings.iter().all(|finding| !finding.message.is_empty() && finding.count > 0));
@@ -31,7 +36,10 @@ pub fn read_as(id: &str, input: &[u8]) -> bool {
             Err(error) => panic!("{id}: what was read is not written: {error}"),
         }
         match read(&bytes, format, &ReadContext::named("again")) {
-            Ok(again) => assert_eq!(faces(&again.shape), faces(&shape), "{id}: faces after writing and reading"),
+            Ok(again) => {
+                assert_eq!(faces(&again.shape), faces(&shape), "{id}: faces after writing and reading");
+                grids_are_the_same(id, &again.shape, &shape);
+            }
             Err(error) => panic!("{id}: what was written is not read: {error}"),
         }
     }
@@ -46,4 +54,15 @@ fn faces(shape: &Shape) -> usize {
         _ => 0,
     };
     shape.parts.iter().map(|part| of(&part.geometry)).sum()
+}
+
+/// What is read of a volume comes back to the bit; directions up to what their lengths are rounded.
+fn grids_are_the_same(id: &str, again: &Shape, shape: &Shape) {
+    for (again, shape) in again.parts.iter().zip(&shape.parts) {
+        if let (Geometry::VoxelGrid(again), Geometry::VoxelGrid(grid)) = (&*again.geometry, &*shape.geometry) {
+            assert_eq!(again.lattice().dimensions(), grid.lattice().dimensions(), "{id}");
+            let bits = |at: u64| (again.samples().get(at).to_bits(), grid.samples().get(at).to_bits());
+            assert!((0..grid.lattice().samples()).map(bits).all(|(again, grid)| again == grid), "{id}");
+        }
+    }
 }

@@ -2,18 +2,20 @@
 
 use std::collections::HashMap;
 
-use shapeloom::core::Options;
-use shapeloom::core::glam::{DVec2, DVec3};
+use shapeloom::core::glam::{DMat3, DVec2, DVec3};
+use shapeloom::core::{Affine, Options};
 use shapeloom::io::{FORMATS, WriteContext, WriteOptions, format_by_id, write};
 use shapeloom::mesh::{COLOR, Column, Domain, GeometricGraph, HeightField, NORMAL, PointCloud, TEXCOORD, Values};
 use shapeloom::shape::{Material, Part, Shape, Units, UpAxis};
+use shapeloom::voxels::isosurface::Lattice;
+use shapeloom::voxels::{Quantity, Samples, VoxelGrid};
 
 use crate::entry::read_as;
 use crate::shapes;
 use crate::support::{Dice, data, root};
 
 /// Inputs of each format by hand, beside those that the writers make.
-const BY_HAND: [(&str, &str); 17] = [
+const BY_HAND: [(&str, &str); 26] = [
     (
         "obj",
         "mtllib a.mtl\no a\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvt 0 0\nvn 0 0 1\ng b c\nusemtl m\ns 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -4//1 -3//1 \\\n-2//1\nl 1 2 3\np 1 2\n",
@@ -57,6 +59,42 @@ const BY_HAND: [(&str, &str); 17] = [
     (
         "ply",
         "ply\rformat ascii 1.0\relement vertex 1\rproperty int8 x\rproperty uint16 y\rproperty float64 z\rend_header\r-1 2 3\r",
+    ),
+    (
+        "nrrd",
+        "NRRD0004\n# comment\ntype: short\ndimension: 4\nspace: left-posterior-superior\nsizes: 1 3 2 2\nspace directions: none (1,0,0) (0,0.5,0.25) (0,-1,2)\nkinds: stub domain domain domain\nspace origin: (1,-2,3e2)\nspace units: \"mm\" \"mm\" \"mm\"\nkey:=value\nencoding: ascii\n\n1 2 3 4 5 6\n7 8 9 -10 11 12\n",
+    ),
+    (
+        "nrrd",
+        "NRRD0001\ntype: uint8\ndimension: 3\nsizes: 3 2 2\nspacings: 1 2 0.5\naxis mins: 0 1 2\ncenters: cell node cell\nencoding: raw\nline skip: 1\nbyte skip: 2\n\nskipped\n..0123456789ab",
+    ),
+    (
+        "nrrd",
+        "NRRD0005\ntype: float\ndimension: 3\nsizes: 2 2 2\nendian: big\nencoding: raw\nbyte skip: -1\n\n???abcdabcdabcdabcdabcdabcdabcdabcd",
+    ),
+    (
+        "mha",
+        "ObjectType = Image\nNDims = 3\nBinaryData = False\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\nPosition = 1 2 3\nElementSpacing = 1 1 2.5\nDimSize = 3 2 2\nAnatomicalOrientation = RAI\nElementType = MET_SHORT\nElementDataFile = LOCAL\n1 2 3 4 5 6 -7 8 9 10 11 12\n",
+    ),
+    (
+        "mha",
+        "NDims = 3\r\nDimSize = 3 2 2\r\nElementSize = 1 1 1\r\nHeaderSize = -1\r\nElementByteOrderMSB = True\r\nElementType = MET_USHORT\r\nElementDataFile = LOCAL\r\n0123456789abcdefghijklmn",
+    ),
+    (
+        "vti",
+        "<?xml version=\"1.0\"?>\n<!-- made -->\n<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"BigEndian\">\n<ImageData WholeExtent=\"0 2 1 2 0 1\" Origin=\"1 2 3\" Spacing=\"1 0.5 2\" Direction=\"0 -1 0 1 0 0 0 0 1\">\n<Piece Extent=\"0 2 1 2 0 1\">\n<PointData Scalars=\"b\">\n<DataArray type=\"Float64\" Name=\"a\" format=\"ascii\">1 2</DataArray>\n<DataArray type=\"Int16\" Name=\"b\" format=\"ascii\">1 2 3 4 5 6\n-7 8 9 10 11 12</DataArray>\n</PointData>\n</Piece>\n</ImageData>\n</VTKFile>\n",
+    ),
+    (
+        "vti",
+        "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 3 0 2 0 2\"><Piece><CellData><DataArray type=\"UInt8\" Name=\"c\" format=\"binary\">\nDAAAADAxMjM0NTY3ODlhYg==\n</DataArray></CellData></Piece></ImageData></VTKFile>",
+    ),
+    (
+        "vtk",
+        "# vtk DataFile Version 2.0\na title\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 2\nASPECT_RATIO 1 2 0.5\nORIGIN -1 0 1\nPOINT_DATA 12\nSCALARS density double\nLOOKUP_TABLE default\n1 2 3 4 5 6 nan 8 9 10 11 1e39\n",
+    ),
+    (
+        "vtk",
+        "# vtk DataFile Version 3.0\nbits\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 3\nSPACING 1 1 1\nORIGIN 0 0 0\nCELL_DATA 12\nSCALARS cells bit 1\nLOOKUP_TABLE default\n\u{3}p\nMETADATA\n",
     ),
 ];
 
@@ -102,6 +140,13 @@ fn shapes() -> Vec<Shape> {
         Shape { materials, ..Shape::new(soup) },
         Shape { parts: vec![Part::new(graph), Part::new(PointCloud::new(vec![DVec3::ONE; 3]))], ..Shape::default() },
         heights(),
+        Shape::new(Part::new(shapes::random_cells())),
+        Shape::new(Part::new(numbers(false))),
+        Shape {
+            units: Some(Units::MILLIMETERS),
+            comments: vec!["space: scanner".into()],
+            ..Shape::new(Part::new(numbers(true)))
+        },
         Shape::new(Part::new(shapeloom::parametric::BezierSurface::new(vec![shapes::bent_patch()]))),
     ]
 }
@@ -111,6 +156,28 @@ fn heights() -> Shape {
     let heights = (0..20).map(|i| if i == 7 { f64::NAN } else { f64::from(i * i % 13) - 4.5 }).collect();
     let field = HeightField::try_new(5, 4, DVec2::new(2.0, 3.0), heights).expect("a field");
     Shape { up: Some(UpAxis::Z), units: Some(Units::METERS), ..Shape::new(Part::new(field)) }
+}
+
+/// A volume of single precision, turned and sheared, or of 16 bits along the axes.
+fn numbers(turned: bool) -> VoxelGrid {
+    let count = 5 * 4 * 3u16;
+    if turned {
+        let steps = DMat3::from_cols(DVec3::new(0.0, 2.0, 0.0), DVec3::new(-1.0, 0.5, 0.0), DVec3::new(0.0, 0.0, -3.0));
+        let placement = Affine { linear: steps, translation: DVec3::new(0.1, -20.0, 1e-3) };
+        let lattice = Lattice::try_new([5, 4, 3], placement).expect("a lattice");
+        let samples = (0..count).map(|i| f32::from(i * i % 17) - 7.25).collect();
+        return VoxelGrid::try_new(lattice, Samples::F32(samples), Quantity::SignedDistance).expect("as many");
+    }
+    let lattice = Lattice::along_axes([5, 4, 3], DVec3::new(-1.0, 0.0, 7.5), DVec3::new(0.3, 0.3, 2.5));
+    let samples = Samples::U16((0..count).map(|i| i * 1057).collect());
+    VoxelGrid::try_new(lattice.expect("a lattice"), samples, Quantity::Density).expect("as many")
+}
+
+/// A volume of run lengths: 3 × 2 × 2 bytes.
+fn packed_slices() -> Vec<u8> {
+    let mut bytes = b"11111\n3 2 2 8\n1.0 1.0 2.0\n1 6 0 1\n1 1 XRGB".to_vec();
+    bytes.extend(b"5 X\x06\x07\0..6X\x83abc\x03d\0");
+    bytes
 }
 
 /// Binary and long inputs by hand: tiled and plain TIFF in both byte orders, the first profiles of a DEM, a PNG with its
@@ -127,6 +194,9 @@ fn more_by_hand() -> Vec<(&'static str, Vec<u8>)> {
     png[calibration + 20] ^= 1;
     vec![
         ("dem", dem),
+        ("slc", packed_slices()),
+        ("raw", (0..120).collect()),
+        ("raw", vec![0; 130]),
         ("tiff", tiff(true, 32, 3, &floats)),
         ("tiff", tiff(false, 16, 1, &words)),
         ("tiff", tiff(false, 16, 2, &words)),
@@ -183,6 +253,7 @@ fn corpus() -> HashMap<&'static str, Vec<Vec<u8>>> {
             };
             for encoding in encodings {
                 let mut options = WriteOptions::new();
+                options.compress = format.write_options.contains(&"compress") && corpus.contains_key(format.id);
                 options.set("encoding", encoding).expect("a word of the choice");
                 let mut bytes = Vec::new();
                 let context = WriteContext { options, ..WriteContext::default() };

@@ -147,6 +147,52 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "E-heights-size",
         "A height field has at least two columns and two rows: between fewer samples there is no surface.",
     ),
+    (
+        "E-metaimage-count",
+        "A number of a MetaImage header is no whole number in digits alone, or a line has too few or too many numbers.",
+    ),
+    ("E-metaimage-dimension", "A volume has three dimensions and one number a sample; this MetaImage has others."),
+    ("E-metaimage-duplicate", "A key of a MetaImage header is there twice."),
+    (
+        "E-metaimage-feature",
+        "The file uses a part of MetaImage that is not read: another object than an image, or samples in several files.",
+    ),
+    (
+        "E-metaimage-header",
+        "A line of a MetaImage header is no key with = and a value, or a key that is needed is missing: NDims, DimSize, ElementType, and at the end ElementDataFile.",
+    ),
+    ("E-metaimage-number", "A number of a MetaImage header does not read as one."),
+    (
+        "E-metaimage-type",
+        "The element type of a MetaImage is one of MET_CHAR, MET_UCHAR, MET_SHORT, MET_USHORT, MET_INT, MET_UINT, MET_LONG_LONG, MET_ULONG_LONG, MET_FLOAT and MET_DOUBLE.",
+    ),
+    (
+        "E-nrrd-count",
+        "A number of axes or samples, or of bytes or lines that are passed over, is no whole number in digits alone, or a field has another number of values than the file has axes.",
+    ),
+    (
+        "E-nrrd-dimension",
+        "A volume has three axes of space and one number a sample. An NRRD with two or four axes, or with an axis of vectors, colours or tensors, is another thing; take one of its components with another program first.",
+    ),
+    ("E-nrrd-duplicate", "A field of an NRRD header is there twice."),
+    (
+        "E-nrrd-feature",
+        "The file uses a part of NRRD that is not read: the encodings hex and bzip2, or samples in several files. Write it anew as raw or gzip in one file.",
+    ),
+    (
+        "E-nrrd-header",
+        "A line of an NRRD header is none of: a field with a colon, a key with :=, a comment from #, the blank line at its end; or a field that is needed is missing: type, dimension, sizes, encoding, and endian where a raw sample has several bytes.",
+    ),
+    ("E-nrrd-magic", "An NRRD file begins with NRRD000 and a digit."),
+    (
+        "E-nrrd-number",
+        "A number of an NRRD header does not read as one, or a vector is not written as three numbers in brackets, such as (1,0,0).",
+    ),
+    (
+        "E-nrrd-type",
+        "The type of an NRRD is one of int8, uint8, int16, uint16, int32, uint32, int64, uint64, float and double, or another of the names that the format has for them.",
+    ),
+    ("E-nrrd-version", "The file is of a version of NRRD that is not known: 1 to 5 are."),
     ("E-obj-degree", "A free-form curve or surface has too few control points for its degree."),
     (
         "E-obj-finite",
@@ -271,6 +317,16 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-sibling-path", "The input names a file outside of its own folder. Such files are never opened."),
     (
+        "E-slc-count",
+        "A number of an SLC header is no whole number in digits alone, or a number of bytes is not followed by an X.",
+    ),
+    (
+        "E-slc-feature",
+        "The file is of a kind of SLC that is not read: other than 8 bits a sample, or another compression than run lengths.",
+    ),
+    ("E-slc-magic", "An SLC file begins with 11111."),
+    ("E-slc-number", "A distance in an SLC header does not read as a number."),
+    (
         "E-stl-claim",
         "The count of a binary STL file is larger than its number of bytes, so that it cannot be right. It may be in the other byte order, or the file may be no STL.",
     ),
@@ -308,6 +364,82 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The tags that say where the strips or tiles of a TIFF file are, or how many rows and bytes each has, contradict each other or the file: one begins outside of the file, or has fewer bytes than its pixels need. Files with strips left out because they are empty are of this kind too. Write the file anew with another program.",
     ),
     ("E-tiff-truncated", "A TIFF file ends before its tags or its data."),
+    (
+        "E-volume-claim",
+        "The header of a volume says that it has more samples than can be in the bytes that follow. Nothing was allocated for them. Mend the sizes, or get a complete copy of the file.",
+    ),
+    (
+        "E-volume-data",
+        "The compressed samples of a volume cannot be unpacked, or their checksum is wrong: the file was damaged.",
+    ),
+    (
+        "E-volume-grid",
+        "The steps between the samples of a volume are no numbers, are 0 or lie in one plane, its places are no numbers, or they are so large that neighbouring samples would be at the same one. Mend the spacing, the directions and the origin in the header.",
+    ),
+    (
+        "E-volume-limit",
+        "A volume has more samples than the limits of reading allow for a file of so many bytes: compressed, a small file may become a very large one. Cut the volume into parts, or store it without compression.",
+    ),
+    ("E-volume-number", "A sample of a volume in text is no number, or none that its type can hold."),
+    (
+        "E-volume-option",
+        "An option of reading volumes is missing or does not read as it should: dimensions and voxel_size are three numbers with x between, such as 256x256x128; voxel_size may be one number too.",
+    ),
+    ("E-volume-size", "A volume has no samples in some direction."),
+    (
+        "E-volume-spacing",
+        "The distances between the samples of a volume are finite numbers above 0. Mend the spacing in the header.",
+    ),
+    (
+        "E-volume-trailing",
+        "Unpacking gives more bytes than the header of a volume says that there are samples. Nothing beyond them was unpacked. Mend the sizes or the type in the header.",
+    ),
+    (
+        "E-volume-truncated",
+        "The samples of a volume end before all of them are there: the file was cut off, or its header says too many.",
+    ),
+    ("E-vti-data", "What stands inside a binary array of a VTI file is no base64."),
+    (
+        "E-vti-dimension",
+        "A volume has one number a sample; the array of the VTI file has several components. Take one of them with another program first.",
+    ),
+    (
+        "E-vti-feature",
+        "The file uses a part of the XML formats of VTK that is not read: another kind of data than ImageData, several pieces, or another compressor than zlib.",
+    ),
+    ("E-vti-header", "An element or attribute that a VTI file must have is not there."),
+    (
+        "E-vti-length",
+        "The array of a VTI file has another number of bytes than the extent and the type of its numbers say.",
+    ),
+    ("E-vti-limit", "The elements of a VTI file are nested deeper than any such file needs."),
+    (
+        "E-vti-number",
+        "An attribute of a VTI file does not have as many numbers as it must, or they do not read as numbers.",
+    ),
+    ("E-vti-truncated", "A VTI file ends before its last element is complete."),
+    ("E-vti-type", "The type of an array in a VTI file is one of Int8 to UInt64, Float32 and Float64."),
+    ("E-vti-value", "An attribute of a VTI file has a value that it cannot have."),
+    ("E-vti-xml", "A VTI file is no well-formed XML at this place."),
+    (
+        "E-vtk-count",
+        "A number of a legacy VTK header is no whole number in digits alone, or the number of samples is not the product of the dimensions.",
+    ),
+    ("E-vtk-dimension", "A volume has one number a sample; the array of the VTK file has several."),
+    (
+        "E-vtk-feature",
+        "The file uses a part of legacy VTK that is not read: other data sets than structured points, or vectors and other attributes before scalars.",
+    ),
+    (
+        "E-vtk-header",
+        "A line of a legacy VTK header is no known keyword, or one that is needed is missing: ASCII or BINARY, DATASET STRUCTURED_POINTS, DIMENSIONS, POINT_DATA or CELL_DATA, SCALARS.",
+    ),
+    ("E-vtk-magic", "A legacy VTK file begins with the line: # vtk DataFile Version, and a number."),
+    ("E-vtk-number", "A number of a legacy VTK header does not read as one."),
+    (
+        "E-vtk-type",
+        "The type of a legacy VTK array is one of bit, char, short, int, long, each also with unsigned_ before it, float and double.",
+    ),
     ("E-write-empty", "The shape has no parts, and the format has no empty files."),
     (
         "E-write-finite",
@@ -501,6 +633,21 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-tiff-strip",
         "The number of bytes of a strip or tile in a TIFF file runs past the end of the file. Its pixels were there all the same, so only what they need was read.",
+    ),
+    (
+        "W-volume-finite",
+        "Some samples of a volume are infinite or no numbers, or too large for single precision. They are kept; isosurfaces take them as outside.",
+    ),
+    ("W-volume-quantity", "A file calls its samples occupancy, yet not all of them are 0 or 1."),
+    (
+        "W-volume-rounded",
+        "Samples are kept in 8 or 16 bits without sign or in single precision. Wider numbers were rounded; the message says by how much at most.",
+    ),
+    ("W-volume-trailing", "More bytes follow after the samples of a volume than its header says. They were not read."),
+    ("W-vti-piece", "A VTI file is one piece of a larger whole, whose other pieces are in other files."),
+    (
+        "W-vtk-more",
+        "More arrays follow after the first in a legacy VTK file; a voxel grid has one, so that they were not read.",
     ),
 ];
 

@@ -7,8 +7,8 @@ use shapeloom_core::Report;
 use shapeloom_shape::{Kind, Shape, UpAxis};
 
 use crate::{
-    ReadContext, ReadError, ReadShape, WriteContext, WriteError, asc, bpt, dem, gltf, obj, off, pgm, ply, png, stl,
-    tiff,
+    ReadContext, ReadError, ReadShape, WriteContext, WriteError, asc, bpt, dem, gltf, metaimage, nrrd, obj, off, pgm,
+    ply, png, raw, slc, stl, tiff, vti, vtk,
 };
 
 /// Reads a whole file. Errors need not name the input: [`read`](crate::read()) does.
@@ -195,6 +195,12 @@ pub static FORMATS: &[Format] = &[
     pgm::FORMAT,
     asc::FORMAT,
     dem::FORMAT,
+    nrrd::FORMAT,
+    vti::FORMAT,
+    vtk::FORMAT,
+    metaimage::FORMAT,
+    slc::FORMAT,
+    raw::FORMAT,
 ];
 
 #[cfg(test)]
@@ -217,7 +223,7 @@ mod tests {
 
     #[test]
     fn no_format_is_sure_of_another_ones_mark() {
-        let marks: [(&str, &[u8]); 8] = [
+        let marks: [(&str, &[u8]); 13] = [
             ("glb", b"glTF\x02\0\0\0"),
             ("ply", b"ply\nformat ascii 1.0\n"),
             ("png", b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"),
@@ -225,6 +231,11 @@ mod tests {
             ("tiff", b"MM\0*\0\0\0\x08"),
             ("pgm", b"P5\n2 2\n255\n"),
             ("pgm", b"P2# made\n"),
+            ("nrrd", b"NRRD0004\n"),
+            ("vti", b"<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\""),
+            ("vtk", b"# vtk DataFile Version 3.0\n"),
+            ("mha", b"ObjectType = Image\nNDims = 3\n"),
+            ("slc", b"11111\n66 66 66 8\n"),
             ("asc", b"NCOLS 3\nnrows 2\n"),
         ];
         for (id, mark) in marks {

@@ -21,6 +21,20 @@ options! {
             spacing: f64 [Bounds::NON_NEGATIVE] = 0.0,
             /// What heights are multiplied by after all else, in every format of height fields.
             exaggeration: f64 [Bounds::FINITE] = 1.0,
+            /// How many samples a raw volume has along x, y and z, such as 256x256x128.
+            dimensions: String = String::new(),
+            /// The type of the samples of a raw volume.
+            scalar: ScalarType = ScalarType::U8,
+            /// The order of the bytes of a sample in a raw volume.
+            byte_order: ByteOrder = ByteOrder::Little,
+            /// How many bytes of a raw volume come before the first sample.
+            skip: u32 = 0,
+            /// The distances between samples along x, y and z in raw volumes and stacks of pictures, such as 0.5x0.5x2, or
+            /// one number for all three.
+            voxel_size: String = "1".to_owned(),
+            /// Whether a picture is a slice of a volume, whose others are the files beside it with the numbers that follow
+            /// the one in its name, or the further pages of its file.
+            stack: bool = false,
         }
     }
 }
@@ -34,6 +48,42 @@ choice! {
         Mapbox = "mapbox",
         /// Terrain tiles as Mapzen has them: red · 256 + green + blue / 256 - 32768 metres.
         Terrarium = "terrarium",
+    }
+}
+
+choice! {
+    /// The numbers of a file without a header.
+    pub enum ScalarType {
+        /// 8 bits with a sign.
+        I8 = "i8",
+        /// 8 bits.
+        U8 = "u8",
+        /// 16 bits with a sign.
+        I16 = "i16",
+        /// 16 bits.
+        U16 = "u16",
+        /// 32 bits with a sign.
+        I32 = "i32",
+        /// 32 bits.
+        U32 = "u32",
+        /// 64 bits with a sign.
+        I64 = "i64",
+        /// 64 bits.
+        U64 = "u64",
+        /// Single precision.
+        F32 = "f32",
+        /// Double precision.
+        F64 = "f64",
+    }
+}
+
+choice! {
+    /// Which byte of a number comes first in a file without a header.
+    pub enum ByteOrder {
+        /// The lowest.
+        Little = "little",
+        /// The highest.
+        Big = "big",
     }
 }
 
@@ -70,6 +120,8 @@ options! {
             encoding: Encoding = Encoding::Automatic,
             /// What becomes of parts that share a geometry, in formats with scenes.
             instances: Instances = Instances::Keep,
+            /// Whether the samples of volumes are compressed, in formats that know it.
+            compress: bool = false,
         }
     }
 }

@@ -170,12 +170,17 @@ fn usual_advice(code: &str) -> Option<&'static str> {
         "limit" | "elements" => "cut the file into parts, or make it smaller with the program that wrote it",
         "line" => "break the line into shorter ones, or get another copy: text has no lines of this length",
         "strip" => "get a complete copy of the file, or write it anew with another program",
+        "spacing" => "mend the distances between samples in the header: they are above 0",
+        "trailing" => "mend the sizes or the type in the header, or get another copy of the file",
+        "xml" => "mend the text at this place: it is no XML",
         "json" => "mend the text at this place: it is no JSON",
         "missing" | "uri" | "path" => "put the file where it is looked for, or export with everything in one file",
         "cycle" | "parents" | "depth" | "sparse" | "order" => "export the file anew: it breaks a rule of its format",
         "color" | "weight" | "mesh" | "patch" => "mend the value in the file, or export it anew",
         "checksum" | "data" => "get the file again: what it holds was damaged",
-        "size" => "use a picture or grid of at least two columns and two rows",
+        "size" => {
+            "use a picture or grid of at least two columns and two rows, or a volume of a sample in each direction"
+        }
         "option" => "leave the option out, or give it a value that `shapeloom explain` allows",
         "channels" => "save the picture in grey, or say how its colours encode heights",
         "maxval" | "value" | "cell" | "grid" | "profile" | "spread" => "mend this number, or export the file anew",

@@ -57,6 +57,8 @@ mod tests {
     use shapeloom_mesh::{HeightField, PolyMesh, TriMesh};
     use shapeloom_parametric::{BezierPatch, BezierSurface};
     use shapeloom_shape::{Kind, Part};
+    use shapeloom_voxels::isosurface::Lattice;
+    use shapeloom_voxels::{Quantity, Samples, VoxelGrid};
 
     fn surface() -> Part {
         let control = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::ONE];
@@ -69,6 +71,11 @@ mod tests {
 
     fn heights() -> Part {
         Part::new(HeightField::try_new(2, 2, DVec2::ONE, vec![0.0, 1.0, 2.0, 3.0]).unwrap())
+    }
+
+    fn grid() -> Part {
+        let lattice = Lattice::along_axes([2, 2, 2], DVec3::ZERO, DVec3::ONE).unwrap();
+        Part::new(VoxelGrid::try_new(lattice, Samples::U8(vec![7; 8]), Quantity::Density).unwrap())
     }
 
     fn polygon() -> Part {
@@ -111,6 +118,7 @@ mod tests {
             let shape = Shape::new(match format.kinds {
                 kinds if kinds.contains(&Kind::TriMesh) => triangle(),
                 kinds if kinds.contains(&Kind::HeightField) => heights(),
+                kinds if kinds.contains(&Kind::VoxelGrid) => grid(),
                 _ => surface(),
             });
             let error = write(&shape, format, &WriteContext::default(), &mut Full).unwrap_err();

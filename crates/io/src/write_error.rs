@@ -43,7 +43,7 @@ pub enum WriteError {
         /// The id of the format.
         format: &'static str,
     },
-    /// A height field whose rows and columns do not run along the axes of space, in a format without directions.
+    /// A height field or voxel grid whose axes do not run along those of space, in a format without directions.
     Turned {
         /// The id of the format.
         format: &'static str,
@@ -100,7 +100,7 @@ impl fmt::Display for WriteError {
                 let name = if name.is_empty() { String::new() } else { format!(" \"{name}\"") };
                 write!(
                     f,
-                    "{format}: part {part}{name}: found a height field that is turned or sheared, expected rows and \
+                    "{format}: part {part}{name}: found a grid that is turned or sheared, expected rows and \
                      columns along the axes and heights upward ({code})"
                 )
             }
