@@ -10,6 +10,7 @@ mod half_edges;
 mod hausdorff;
 mod heightfield;
 mod measure;
+mod mesh_to_sdf;
 mod queries;
 mod rays;
 mod self_intersection;
@@ -88,6 +89,8 @@ pub enum Task {
     Heightfield,
     /// The Delaunay triangulation of the points of pts2d.f64 (else of a formula).
     Delaunay2d,
+    /// Signed distances of blob_1m.ply (else of a torus) on 256³ samples.
+    MeshToSdf,
 }
 
 impl Task {
@@ -121,6 +124,7 @@ impl Task {
                 names(&format!("j.closest_{size}"), &[".query", ".build+query", ".t1", ".tall"])
             }
             Self::Delaunay2d => vec!["k.delaunay2d_1m".into(), "k.delaunay2d_1m.f32".into()],
+            Self::MeshToSdf => vec!["o.mesh1m_to_sdf256.narrow3".into()],
             Self::SelfIntersection => vec!["j.self_intersection".into()],
             Self::Winding | Self::SignedDistance => {
                 let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
@@ -190,6 +194,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Onering => half_edges::sweep(&setting),
         Task::Heightfield => heightfield::run(&setting),
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
+        Task::MeshToSdf => mesh_to_sdf::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);
