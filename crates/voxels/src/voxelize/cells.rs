@@ -6,7 +6,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ConvertError, Exec};
 
 use super::box_overlap::Overlap;
-use crate::mesh_distance::{InCells, Rows, whole_numbers};
+use crate::mesh_distance::{Rows, whole_numbers};
 
 /// A bit for each sample of some slabs.
 pub(super) struct Cells {
