@@ -55,4 +55,5 @@ mod support;
 mod topology;
 mod triangle_pairs;
 mod verification;
+mod voxelisation;
 mod winding;

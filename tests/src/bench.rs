@@ -36,9 +36,9 @@ fn every_task_prints_lines_of_json() {
         let expected = match task {
             Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge | Task::Delaunay2d => 1,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
-            Task::Closest | Task::Onering | Task::Heightfield => 2,
             Task::SurfaceNets => 3,
             Task::Isosurface => 4,
+            Task::Closest | Task::Onering | Task::Heightfield | Task::MeshToSdf => 2,
             Task::Read | Task::Write | Task::Rays => 5,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");

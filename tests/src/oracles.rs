@@ -130,7 +130,7 @@ pub fn bernstein(control: &[DVec3], t: f64) -> DVec3 {
 
 /// Points where the trilinear interpolant of a grid reaches its iso value, on lines through each cell, and places of the border
 /// that are inside.
-fn trilinear_surface(grid: &VoxelGrid) -> Vec<DVec3> {
+pub fn trilinear_surface(grid: &VoxelGrid) -> Vec<DVec3> {
     const LINES: u32 = 4;
     let [nx, ny, nz] = grid.lattice().dimensions();
     let iso = grid.default_iso().expect("a grid that says where its surface is");
@@ -139,6 +139,12 @@ fn trilinear_surface(grid: &VoxelGrid) -> Vec<DVec3> {
     let cells = (0..nz - 1).flat_map(|k| (0..ny - 1).flat_map(move |j| (0..nx - 1).map(move |i| [i, j, k])));
     for [i, j, k] in cells {
         let corner = |c: u32| f64::from(grid.sample([i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)]));
+        // The interpolant is between its corners: cells of one side only have nothing but the border.
+        let inside = (0..8).filter(|&c| sign * (corner(c) - iso) < 0.0).count();
+        let at_border = [i, j, k].contains(&0) || [i + 2 == nx, j + 2 == ny, k + 2 == nz].contains(&true);
+        if inside == 0 || (inside == 8 && !at_border) {
+            continue;
+        }
         let value = |at: DVec3| {
             let weight = |c: u32| {
                 let part = |bit: u32, x: f64| if c >> bit & 1 == 1 { x } else { 1.0 - x };

@@ -11,6 +11,7 @@ mod hausdorff;
 mod heightfield;
 mod isosurface;
 mod measure;
+mod mesh_to_sdf;
 mod queries;
 mod rays;
 mod self_intersection;
@@ -95,6 +96,8 @@ pub enum Task {
     /// Surface nets of vol_blend.f32 and vol_gyroid.f32 (else of a small volume of a formula).
     #[value(name = "surfacenets")]
     SurfaceNets,
+    /// Signed distances of blob_1m.ply (else of a torus) on 256³ samples.
+    MeshToSdf,
 }
 
 impl Task {
@@ -134,6 +137,7 @@ impl Task {
             }
             Self::Isosurface if input.contains("blend") => vec!["b.mc256_blend".into()],
             Self::Isosurface => vec!["b.mc256_gyroid".into()],
+            Self::MeshToSdf => vec!["o.mesh1m_to_sdf256.narrow3".into()],
             Self::SelfIntersection => vec!["j.self_intersection".into()],
             Self::Winding | Self::SignedDistance => {
                 let points = if input.contains("qry_surface") { "near_1m" } else { "box_100k" };
@@ -205,6 +209,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Isosurface => isosurface::run(&setting),
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
         Task::SurfaceNets => surface_nets::run(&setting),
+        Task::MeshToSdf => mesh_to_sdf::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

@@ -197,6 +197,18 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-usage-threads", "That many threads could not be started."),
     (
+        "E-voxel-cell-size",
+        "With this cell size distances or volumes leave single precision, or the lattice has too many samples, or they would fall on each other far from the origin. Choose another cell size or resolution, or scale or move the shape.",
+    ),
+    (
+        "E-voxel-lattice",
+        "Voxels are made on lattices of cubes along the axes only: the three steps between samples must be equally long, along x, y and z.",
+    ),
+    (
+        "E-voxel-position",
+        "A vertex or point has a coordinate that is NaN or infinite, so it is in no cell. Take it out, or look where it comes from.",
+    ),
+    (
         "W-check-contact",
         "Two faces touch in a point, along a segment or all over, beside the corners and sides that they share.",
     ),
@@ -342,6 +354,11 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-plane-tiny",
         "Coordinates are so small beside the largest that their products are no numbers; they were taken as 0 in deciding what lies where. Positions are unchanged.",
     ),
+    ("W-points-outside", "Points lie outside of the lattice that was given, so no sample knows of them."),
+    (
+        "W-points-saturated",
+        "A cell holds more points than a sample of 16 bits can say: the sample is 65535. Choose smaller cells, or densities instead of counts.",
+    ),
     ("W-polygon-simple", "A polygon crosses itself or has no area; it was cut into triangles as well as possible."),
     (
         "W-refine-angle",
@@ -360,6 +377,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The refinement used up the vertices that it may add before all triangles were as wanted. Raise max_added, or ask for a smaller angle or larger area.",
     ),
     ("W-refine-small", "Triangles as small as the rounding of their coordinates stay as they are."),
+    (
+        "W-voxel-lost",
+        "Parts of the mesh are thinner than a cell, so no sample lies in them, or their faces look inward: the surface that the samples describe leaves them out. Choose smaller cells, or turn the faces.",
+    ),
+    (
+        "W-voxel-open",
+        "The mesh is not closed, so inside and outside are not given by it alone. Inside is where the generalised winding number is above 1/2, which closes holes smoothly; there the deviation is not known.",
+    ),
 ];
 
 /// Every code with its meaning.

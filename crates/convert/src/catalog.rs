@@ -7,9 +7,8 @@ use shapeloom_mesh::{
     TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
-use shapeloom_voxels::VoxelGrid;
-use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, SurfaceNets};
-use shapeloom_voxels::isosurface::{MarchingCubes, MarchingTetrahedra};
+use shapeloom_voxels::{MeshToDistance, PointsToGrid, VoxelGrid, VoxelizeMesh};
+use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, MarchingCubes, MarchingTetrahedra, SurfaceNets};
 
 use crate::registry::{Converter, Effect, entry};
 
@@ -30,6 +29,9 @@ pub fn catalog() -> Vec<Converter> {
         entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
         entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),
         entry::<TriangulateRegion, Polyline>(Effect::Reported).only_by_name(),
+        entry::<MeshToDistance, TriMesh>(Effect::Reported).only_by_name(),
+        entry::<VoxelizeMesh, TriMesh>(Effect::Reported).only_by_name(),
+        entry::<PointsToGrid, PointCloud>(Effect::Reported).only_by_name(),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),
