@@ -3,6 +3,8 @@
 mod cell_faces;
 mod error;
 mod full_cells;
+mod grid_field;
+mod level_set;
 mod morton;
 mod octree;
 mod samples;
@@ -11,6 +13,10 @@ mod voxel_grid;
 
 pub use cell_faces::CellFaces;
 pub use error::VoxelError;
+pub use grid_field::{GridField, Interpolation};
+pub use level_set::{
+    Blend, CurvatureFlow, OffsetLevelSet, Redistance, blend, blend_bands, curvature_flow_band, redistance_band,
+};
 pub use octree::{Octree, OctreeCounts};
 pub use samples::Samples;
 pub use shapeloom_isosurface as isosurface;
