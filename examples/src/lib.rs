@@ -1,10 +1,12 @@
 //! What the examples share: where they write, how they draw, how they measure. The examples themselves lie beside this
 //! folder.
 
+mod grids;
 mod measure;
 mod rod;
 mod slice;
 
+pub use grids::{blocks, sampled};
 pub use measure::{measure_patch, triangles_of_patch};
 pub use rod::rod;
 pub use slice::Slice;

@@ -7,6 +7,7 @@ use shapeloom_mesh::{
     TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
+use shapeloom_voxels::{CellFaces, CurvatureFlow, OffsetLevelSet, Redistance, VoxelGrid};
 
 use crate::registry::{Converter, Effect, entry};
 
@@ -22,11 +23,15 @@ pub fn catalog() -> Vec<Converter> {
         entry::<DelaunayTriangulation, PointCloud>(Effect::Reported).only_by_name(),
         entry::<ConstrainedDelaunay, GeometricGraph>(Effect::Reported).only_by_name(),
         entry::<TriangulateRegion, Polyline>(Effect::Reported).only_by_name(),
+        entry::<CellFaces, VoxelGrid>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),
         entry::<OrientFaces, PolyMesh>(Effect::Exact),
         entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
+        entry::<Redistance, VoxelGrid>(Effect::Reported),
+        entry::<OffsetLevelSet, VoxelGrid>(Effect::Reported),
+        entry::<CurvatureFlow, VoxelGrid>(Effect::Reported),
     ]
 }

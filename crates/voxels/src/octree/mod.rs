@@ -158,6 +158,26 @@ impl Octree {
         cells
     }
 
+    /// The full octants, depth first: the smallest cell of each, and how many cells it has along a side. Those beyond the lattice are
+    /// among them after [`complement`](Self::complement).
+    pub fn full_octants(&self) -> Vec<([u32; 3], u32)> {
+        let mut found = Vec::new();
+        // Seven siblings wait on each level at most.
+        let mut open = vec![(self.root, [0; 3], self.depth)];
+        while let Some((node, base, level)) = open.pop() {
+            match node {
+                FULL => found.push((base, 1 << level)),
+                EMPTY => {}
+                mixed => {
+                    for (child, &node) in self.children[mixed as usize].iter().enumerate().rev() {
+                        open.push((node, child_base(base, 1 << (level - 1), child), level - 1));
+                    }
+                }
+            }
+        }
+        found
+    }
+
     /// The memory that the tree takes, in bytes.
     pub fn memory_bytes(&self) -> usize {
         size_of_val(self.children.as_slice())

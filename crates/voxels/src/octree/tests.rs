@@ -52,6 +52,9 @@ fn thousands_of_random_grids_come_back_exactly() {
         assert_eq!(tree.full_cells(), full as u64);
         let bits = tree.encode(&exec()).unwrap();
         assert!(Octree::decode(&bits, *source.lattice(), &exec()).unwrap() == tree);
+        let octants = tree.full_octants();
+        assert_eq!(octants.iter().map(|(_, side)| u64::from(*side).pow(3)).sum::<u64>(), full as u64);
+        assert!(octants.iter().all(|(base, _)| source.sample(*base) == 1.0));
         let counts = tree.counts();
         assert_eq!(counts.full + counts.empty, 7 * counts.mixed + 1);
         assert!(bits.len() as u64 * 8 <= 2 * counts.nodes() + 7);
