@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ball = sampled(48, 1.0, |p| p.length() - 0.7)?;
     let band = SparseBricks::narrow_band(&ball, 0.25, &exec)?;
     println!("{} bytes as a grid, {} as a band", ball.memory_bytes(), band.memory_bytes());
-    for time in [0.03, 0.06, 0.09] {
+    for time in [0.03, 0.09] {
         let wanted = (0.49f64 - 4.0 * time).sqrt();
         let dense = radius(&CurvatureFlow::new(time).convert(&ball)?.value)?;
         let sparse = radius(&curvature_flow_band(&band, time, 0.9, &exec)?.to_grid(&exec)?)?;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let rough = Redistance::new().convert(&sampled(56, 1.0, rough)?)?.value;
     let mut scene = Scene::default();
-    for (place, time) in [0.0, 0.004, 0.05].into_iter().enumerate() {
+    for (place, time) in [0.0, 0.004, 0.03].into_iter().enumerate() {
         let smooth = CurvatureFlow::new(time).convert(&rough)?.value;
         scene.surfaces.push(blocks(&smooth, DVec3::X * 1.7 * (place as f64 - 1.0), [0.85, 0.6, 0.35])?);
     }

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     let mut scene = Scene::default();
     for (place, how) in ways.into_iter().enumerate() {
-        let shift = DVec3::X * 1.8 * (place as f64 - 2.0);
+        let shift = DVec3::X * 1.45 * (place as f64 - 2.0);
         scene.surfaces.push(blocks(&blend(&a, &b, how, &exec)?, shift, [0.45, 0.65, 0.5])?);
     }
     println!("{}", output.draw("level_sets", &scene, [0.0, 15.0], Picture::new())?.display());

@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(Octree::from_slabs(&sampled(32, 1.0, value)?, LEVEL, &exec)?)
     };
     let ball = tree(&|p| p.length() - 0.95)?;
-    let bite = tree(&|p| p.distance(DVec3::new(0.5, -0.6, 0.5)) - 0.5)?;
+    let bite = tree(&|p| p.distance(DVec3::new(0.5, 0.0, 0.5)) - 0.45)?;
     let half = tree(&|p| p.y + 0.03)?;
     let bitten = ball.difference(&bite, &exec)?.difference(&half, &exec)?;
     println!("{} cells in {} octants", bitten.full_cells(), bitten.full_octants().len());
@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let color = [0.9, 0.75 - 0.08 * side as f32, 0.25 + 0.09 * side as f32];
         scene.surfaces.push(cube(DVec3::from(base.map(f64::from)), f64::from(side) - 0.12, color));
     }
-    println!("{}", output.draw("octree", &scene, [25.0, 25.0], Picture::new())?.display());
+    println!("{}", output.draw("octree", &scene, [-20.0, 20.0], Picture::new())?.display());
     Ok(())
 }
 

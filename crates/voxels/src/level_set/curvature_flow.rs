@@ -8,8 +8,8 @@ use shapeloom_core::{
 use shapeloom_isosurface::Lattice;
 
 use super::{as_distances, check_scale, distance_grid, redistance_band};
-use crate::sparse_bricks::{BRICK, Filled, samples_of};
-use crate::{SparseBricks, VoxelError, VoxelGrid};
+use crate::sparse_bricks::{BRICK, Filled, SIDE, offset, samples_of};
+use crate::{SparseBricks, VoxelError, VoxelGrid, morton};
 
 /// Steps in one run at most.
 const MOST_STEPS: u32 = 1_000_000;
@@ -102,11 +102,12 @@ pub fn curvature_flow_band(
         let half_width = band.background();
         let mut next = SparseBricks::try_new(lattice, half_width, band.quantity())?;
         let _memory = exec.reserve_elements(band.keys().len() as u64, 2 * SparseBricks::BRICK_BYTES)?;
-        let at = |sample: [u32; 3]| f64::from(band.sample(sample));
         let mut fastest = 0.0f32;
         for &key in band.keys() {
             exec.check()?;
             let before = band.filled(key);
+            let around = Around::new(&band, key, &before);
+            let at = |sample: [u32; 3]| around.value(sample);
             let mut filled = Filled { key, values: [half_width; BRICK], mask: before.mask };
             for (sample, place) in samples_of(key, lattice.dimensions()) {
                 filled.values[place] = before.values[place];
@@ -129,6 +130,32 @@ pub fn curvature_flow_band(
         };
     }
     Ok(band)
+}
+
+/// The samples of a brick and one layer around it, so that each is looked up once.
+struct Around {
+    /// One less than the brick's first sample; wraps at the border, where it is never asked for.
+    first: [u32; 3],
+    values: [f32; 10 * 10 * 10],
+}
+
+impl Around {
+    fn new(band: &SparseBricks, key: u64, brick: &Filled) -> Self {
+        let first = morton::decode(key).map(|at| (at * SIDE).wrapping_sub(1));
+        let mut values = [band.background(); 1000];
+        for (at, value) in (0..).zip(&mut values) {
+            let to: [u32; 3] = [at % 10, at / 10 % 10, at / 100];
+            let sample = std::array::from_fn(|axis| first[axis].wrapping_add(to[axis]));
+            let own = to.iter().all(|step| (1..=SIDE).contains(step));
+            *value = if own { brick.values[offset(sample)] } else { band.sample(sample) };
+        }
+        Self { first, values }
+    }
+
+    fn value(&self, sample: [u32; 3]) -> f64 {
+        let [i, j, k]: [usize; 3] = std::array::from_fn(|axis| sample[axis].wrapping_sub(self.first[axis]) as usize);
+        f64::from(self.values[(k * 10 + j) * 10 + i])
+    }
 }
 
 /// Differences on a lattice, and what makes derivatives in space of them.
