@@ -10,6 +10,7 @@ mod half_edges;
 mod hausdorff;
 mod heightfield;
 mod measure;
+mod octree;
 mod queries;
 mod rays;
 mod self_intersection;
@@ -88,6 +89,8 @@ pub enum Task {
     Heightfield,
     /// The Delaunay triangulation of the points of pts2d.f64 (else of a formula).
     Delaunay2d,
+    /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an octree and back.
+    Octree,
 }
 
 impl Task {
@@ -142,6 +145,7 @@ impl Task {
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
+            Self::Octree => Vec::new(),
         }
     }
 }
@@ -190,6 +194,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Onering => half_edges::sweep(&setting),
         Task::Heightfield => heightfield::run(&setting),
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
+        Task::Octree => octree::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

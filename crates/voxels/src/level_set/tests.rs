@@ -61,7 +61,6 @@ fn distances_come_back_from_bent_values_at_the_order_stated() {
         };
         let (coarse, fine) = (error(17), error(33));
         let measured = (coarse / fine).log2();
-        println!("{name}: {coarse:.2e} at 17, {fine:.2e} at 33, order {measured:.2}");
         assert!(measured > order, "{name}: order {measured}");
         assert!(fine < most * 2.0 / 32.0, "{name}: {fine}");
     }
@@ -262,7 +261,6 @@ fn spheres_morph_with_their_radius() {
 #[test]
 fn edges_of_a_cube_are_cut_by_less_than_a_cell() {
     let found = aliasing(24, Interpolation::Trilinear);
-    println!("trilinear: edge {:.3}, corner {:.3} cells", found[0], found[1]);
     let halved = aliasing(48, Interpolation::Trilinear);
     assert!(found[0] > 0.05 && found[0] < 0.6 && found[1] < 1.0, "{found:?}");
     // The same in cells on a lattice twice as fine: first order.
