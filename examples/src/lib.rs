@@ -2,11 +2,13 @@
 //! folder.
 
 mod boxes;
+mod grids;
 mod measure;
 mod rod;
 mod slice;
 
 pub use boxes::boxes;
+pub use grids::{blocks, sampled};
 pub use measure::{measure_patch, triangles_of_patch};
 pub use rod::rod;
 pub use slice::Slice;

@@ -5,6 +5,7 @@
 
 mod bench;
 mod between_formats;
+mod cell_faces;
 mod check;
 mod codes;
 mod collection;

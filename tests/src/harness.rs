@@ -29,10 +29,14 @@ fn request(geometry: &Geometry) -> Request<'static> {
 /// The two-sided distance that brute force finds. From the source to the result it is no more than the true one, being
 /// sampled; the way back to a curved source is found by descent, to a millionth of its size.
 fn measured(source: &Geometry, result: &Geometry) -> f64 {
-    if let Geometry::VoxelGrid(grid) = result {
+    if let (Geometry::VoxelGrid(grid), false) = (result, source.kind() == Kind::VoxelGrid) {
         return measured_on_lattice(source, grid);
     }
-    let pieces = Pieces::of(result).expect("every result so far is made of straight pieces");
+    // A grid's surface by points on it: that is no less than the distance.
+    let pieces = match result {
+        Geometry::VoxelGrid(_) => Pieces::Points(oracles::samples(result)),
+        _ => Pieces::of(result).expect("every other result so far is made of straight pieces"),
+    };
     let mut dice = Dice(7);
     // Every sample against every piece: of large sets a fixed choice.
     let mut some = |points: Vec<_>, most: usize| {

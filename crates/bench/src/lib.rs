@@ -12,6 +12,7 @@ mod heightfield;
 mod isosurface;
 mod measure;
 mod mesh_to_sdf;
+mod octree;
 mod queries;
 mod rays;
 mod self_intersection;
@@ -98,6 +99,8 @@ pub enum Task {
     SurfaceNets,
     /// Signed distances of blob_1m.ply (else of a torus) on 256³ samples.
     MeshToSdf,
+    /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an octree and back.
+    Octree,
 }
 
 impl Task {
@@ -159,6 +162,7 @@ impl Task {
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
+            Self::Octree => Vec::new(),
         }
     }
 }
@@ -210,6 +214,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
         Task::SurfaceNets => surface_nets::run(&setting),
         Task::MeshToSdf => mesh_to_sdf::run(&setting),
+        Task::Octree => octree::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

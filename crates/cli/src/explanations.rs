@@ -98,6 +98,18 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-mesh-size", "There are more elements than 32-bit ids can tell apart."),
     ("E-mesh-starts", "The corners of polygon faces are listed out of order."),
     ("E-mesh-triangle", "A polygon stands where only triangles fit; triangulate first."),
+    (
+        "E-octree-end",
+        "The bits of an octree end before its last node: the data is cut off or belongs to another lattice.",
+    ),
+    (
+        "E-octree-equal",
+        "The bits of an octree have eight equal leaves where the code has one leaf: the data is damaged.",
+    ),
+    (
+        "E-octree-trailing",
+        "The bits of an octree go on after its last node: the data is damaged or belongs to another lattice.",
+    ),
     ("E-option-range", "An option's number is outside its bounds; `shapeloom graph` lists options with their bounds."),
     ("E-option-text", "An option's value cannot be read as the kind of value it takes."),
     ("E-option-unknown", "A converter has no option of that name; `shapeloom graph` lists them."),
@@ -207,6 +219,34 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-voxel-position",
         "A vertex or point has a coordinate that is NaN or infinite, so it is in no cell. Take it out, or look where it comes from.",
+    ),
+    (
+        "E-voxels-finite",
+        "A sample is NaN or infinite where an interpolant needs numbers. Redistancing gives every sample a finite distance.",
+    ),
+    (
+        "E-voxels-lattices",
+        "Two grids were to be combined that do not lie on one lattice. Sample both with the same number of samples, spacing and origin.",
+    ),
+    (
+        "E-voxels-overflow",
+        "A length, offset, radius or fraction is outside of what the operation can hold in single precision. Scale the shape to a size near 1.",
+    ),
+    (
+        "E-voxels-size",
+        "A grid has more samples in a direction than an octree (2^21) or sparse bricks (2^24) can address. Resample it coarser.",
+    ),
+    (
+        "E-voxels-steps",
+        "Curvature flow would take more than a million steps. Ask for less time, or resample the grid coarser: the number of steps grows with the inverse square of the spacing.",
+    ),
+    (
+        "W-cells-merged",
+        "Faces of cells were merged into rectangles, which meet in T-junctions: the mesh covers its surface but its edges do not match. Without merge they do.",
+    ),
+    (
+        "W-cells-touch",
+        "Full cells touch along an edge alone, where four faces meet: the mesh is not a manifold there. The option separate doubles the vertices.",
     ),
     (
         "W-check-contact",

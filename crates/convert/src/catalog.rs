@@ -7,7 +7,7 @@ use shapeloom_mesh::{
     TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
-use shapeloom_voxels::{MeshToDistance, PointsToGrid, VoxelGrid, VoxelizeMesh};
+use shapeloom_voxels::{CellFaces, CurvatureFlow, MeshToDistance, OffsetLevelSet, PointsToGrid, Redistance, VoxelGrid, VoxelizeMesh};
 use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, MarchingCubes, MarchingTetrahedra, SurfaceNets};
 
 use crate::registry::{Converter, Effect, entry};
@@ -32,11 +32,15 @@ pub fn catalog() -> Vec<Converter> {
         entry::<MeshToDistance, TriMesh>(Effect::Reported).only_by_name(),
         entry::<VoxelizeMesh, TriMesh>(Effect::Reported).only_by_name(),
         entry::<PointsToGrid, PointCloud>(Effect::Reported).only_by_name(),
+        entry::<CellFaces, VoxelGrid>(Effect::Reported),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),
         entry::<OrientFaces, PolyMesh>(Effect::Exact),
         entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
+        entry::<Redistance, VoxelGrid>(Effect::Reported),
+        entry::<OffsetLevelSet, VoxelGrid>(Effect::Reported),
+        entry::<CurvatureFlow, VoxelGrid>(Effect::Reported),
     ]
 }

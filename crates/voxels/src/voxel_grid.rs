@@ -26,6 +26,23 @@ impl Quantity {
             Self::SignedDistance => "signed-distance",
         }
     }
+
+    /// On which side of the iso value the inside is.
+    pub(crate) fn inside(self) -> Inside {
+        match self {
+            Self::SignedDistance => Inside::Below,
+            Self::Occupancy | Self::Density => Inside::Above,
+        }
+    }
+
+    /// The value that the surface is at; none where only the samples can tell.
+    pub(crate) fn default_iso(self) -> Option<f64> {
+        match self {
+            Self::SignedDistance => Some(0.0),
+            Self::Occupancy => Some(0.5),
+            Self::Density => None,
+        }
+    }
 }
 
 /// From where to where samples run.
@@ -152,18 +169,11 @@ impl Slabs for VoxelGrid {
     }
 
     fn inside(&self) -> Inside {
-        match self.quantity {
-            Quantity::SignedDistance => Inside::Below,
-            Quantity::Occupancy | Quantity::Density => Inside::Above,
-        }
+        self.quantity.inside()
     }
 
     fn default_iso(&self) -> Option<f64> {
-        match self.quantity {
-            Quantity::SignedDistance => Some(0.0),
-            Quantity::Occupancy => Some(0.5),
-            Quantity::Density => None,
-        }
+        self.quantity.default_iso()
     }
 }
 

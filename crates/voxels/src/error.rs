@@ -1,0 +1,123 @@
+//! Why grids cannot be used.
+
+use std::fmt;
+
+use shapeloom_core::{Category, Diagnostic};
+
+/// Why a grid, an octree or bricks cannot be used.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VoxelError {
+    /// More samples in a direction than the structure can address.
+    TooLarge {
+        /// The structure.
+        structure: &'static str,
+        /// The samples in each direction.
+        dimensions: [u32; 3],
+        /// The most in a direction.
+        most: u32,
+    },
+    /// Two grids that lie on different lattices.
+    Lattices {
+        /// The samples of the first.
+        first: [u32; 3],
+        /// The samples of the second.
+        second: [u32; 3],
+    },
+    /// A sample that is NaN or infinite where only numbers will do.
+    NotFinite {
+        /// Where it is in the lattice.
+        sample: [u32; 3],
+        /// What was found.
+        found: f32,
+    },
+    /// A number that single precision does not hold.
+    Overflow {
+        /// What the number is.
+        what: &'static str,
+        /// What was found.
+        found: f64,
+    },
+    /// More steps than one run may take.
+    Steps {
+        /// The steps that it would take.
+        found: f64,
+        /// The most that are taken.
+        most: u32,
+    },
+    /// Bits of an octree that end before the tree does.
+    OctreeEnds {
+        /// How many bits there are.
+        bits: u64,
+    },
+    /// Eight equal leaves, which the code never has.
+    OctreeEqual {
+        /// The first bit after them.
+        bit: u64,
+    },
+    /// Something behind the last node.
+    OctreeTrails {
+        /// The first bit behind it.
+        bit: u64,
+    },
+}
+
+impl fmt::Display for VoxelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooLarge { structure, dimensions: [x, y, z], most } => {
+                write!(f, "{structure}: found {x} x {y} x {z} samples, expected at most {most} in a direction")
+            }
+            Self::Lattices { first: [a, b, c], second: [x, y, z] } => write!(
+                f,
+                "two grids: found lattices of {a} x {b} x {c} and {x} x {y} x {z} samples, expected one lattice in one place"
+            ),
+            Self::NotFinite { sample: [i, j, k], found } => {
+                write!(f, "grid: sample ({i}, {j}, {k}): found {found}, expected a finite number")
+            }
+            Self::Overflow { what, found } => {
+                write!(f, "grid: found {what} of {found:e}, expected one that single precision holds")
+            }
+            Self::Steps { found, most } => {
+                write!(f, "curvature flow: found a need of {found:e} steps, expected at most {most}")
+            }
+            Self::OctreeEnds { bits } => write!(f, "octree: found the end after bit {bits}, expected more nodes"),
+            Self::OctreeEqual { bit } => {
+                write!(f, "octree: bit {bit}: found eight equal leaves, expected one leaf in their place")
+            }
+            Self::OctreeTrails { bit } => write!(f, "octree: bit {bit}: found more, expected zeros up to a whole byte"),
+        }
+    }
+}
+
+impl std::error::Error for VoxelError {}
+
+impl Diagnostic for VoxelError {
+    fn code(&self) -> &'static str {
+        match self {
+            Self::TooLarge { .. } => "E-voxels-size",
+            Self::Lattices { .. } => "E-voxels-lattices",
+            Self::NotFinite { .. } => "E-voxels-finite",
+            Self::Overflow { .. } => "E-voxels-overflow",
+            Self::Steps { .. } => "E-voxels-steps",
+            Self::OctreeEnds { .. } => "E-octree-end",
+            Self::OctreeEqual { .. } => "E-octree-equal",
+            Self::OctreeTrails { .. } => "E-octree-trailing",
+        }
+    }
+
+    fn category(&self) -> Category {
+        match self {
+            Self::TooLarge { .. } | Self::Steps { .. } => Category::OverLimit,
+            Self::Lattices { .. } | Self::Overflow { .. } => Category::Usage,
+            _ => Category::Malformed,
+        }
+    }
+
+    fn advice(&self) -> Option<String> {
+        match self {
+            Self::Lattices { .. } => Some("sample both on one lattice".into()),
+            Self::Steps { .. } => Some("ask for less time, or a coarser grid".into()),
+            _ => None,
+        }
+    }
+}
