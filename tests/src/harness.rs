@@ -8,7 +8,7 @@ use shapeloom::core::glam::DVec3;
 use shapeloom::core::{Category, Deviation, Exec, OptionKind, Stop, Threads};
 use shapeloom::isosurface::Slabs;
 use shapeloom::mesh::{Column, Domain, MeshAttributes};
-use shapeloom::shape::Geometry;
+use shapeloom::shape::{Geometry, Kind};
 use shapeloom::voxels::VoxelGrid;
 
 use crate::oracles::{self, Pieces};
