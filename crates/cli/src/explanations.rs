@@ -249,6 +249,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
     ),
     (
+        "W-dual-contouring-held",
+        "The point that fits the planes of a cell best lies outside of the cell, as with planes that nearly agree or with noise; the vertex was put at the nearest place in its cell.",
+    ),
+    (
         "W-face-turned",
         "Faces were turned by more than a right angle when vertices moved: the mesh is folded there. Ask for less, or start from a mesh that is nearer to what is wanted.",
     ),
@@ -360,6 +364,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The refinement used up the vertices that it may add before all triangles were as wanted. Raise max_added, or ask for a smaller angle or larger area.",
     ),
     ("W-refine-small", "Triangles as small as the rounding of their coordinates stay as they are."),
+    (
+        "W-surface-nets-edges",
+        "Edges of the result have more than two triangles, because two pieces of the surface pass through one cell and share its vertex. The method manifold-surface-nets gives each piece a vertex of its own.",
+    ),
 ];
 
 /// Every code with its meaning.
