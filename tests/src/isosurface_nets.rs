@@ -1,8 +1,10 @@
 //! Dual isosurfaces: manifold whatever the samples, oriented, and where they should be.
 
 use shapeloom::core::glam::{DMat3, DVec3};
-use shapeloom::core::{Affine, Convert, Converted, Deviation, Exec, Threads};
-use shapeloom::isosurface::{Border, InsideChoice, IsoValue, Lattice, ManifoldSurfaceNets};
+use shapeloom::core::{Affine, AxisAngle, Convert, Converted, Deviation, Exec, Field, Threads};
+use shapeloom::isosurface::{
+    Border, DualContouring, FieldSlabs, InsideChoice, IsoValue, Lattice, ManifoldSurfaceNets, SurfaceNets,
+};
 use shapeloom::judge::Topology;
 use shapeloom::mesh::{Domain, NORMAL, TriMesh};
 use shapeloom::voxels::{Quantity, Samples, VoxelGrid};
@@ -334,4 +336,159 @@ fn iso_values_out_of_range_give_nothing_and_say_so() {
             assert!((mesh.volume() - 8.0).abs() < 1e-9, "{iso}: {}", mesh.volume());
         }
     }
+}
+
+/// The distance to a box around the origin, turned.
+struct TurnedBox {
+    half: DVec3,
+    turn: Affine,
+}
+
+impl TurnedBox {
+    fn corners(&self) -> [DVec3; 8] {
+        let sign = |c: usize, bit: usize| if c >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        std::array::from_fn(|c| self.turn.point(self.half * DVec3::new(sign(c, 0), sign(c, 1), sign(c, 2))))
+    }
+}
+
+impl Field for TurnedBox {
+    fn value(&self, point: DVec3) -> f64 {
+        let local = self.turn.inverse().expect("a rotation").point(point).abs() - self.half;
+        local.max(DVec3::ZERO).length() + local.max_element().min(0.0)
+    }
+
+    fn gradient(&self, point: DVec3) -> DVec3 {
+        let local = self.turn.inverse().expect("a rotation").point(point);
+        let beyond = local.abs() - self.half;
+        let gradient = match beyond.max_element() > 0.0 {
+            true => beyond.max(DVec3::ZERO).normalize() * local.signum(),
+            false => {
+                let axis = (0..3).max_by(|&a, &b| beyond[a].total_cmp(&beyond[b])).expect("three axes");
+                DVec3::AXES[axis] * local[axis].signum()
+            }
+        };
+        self.turn.vector(gradient)
+    }
+}
+
+/// The largest distance from a corner to the nearest vertex.
+fn corner_error(mesh: &TriMesh, field: &TurnedBox) -> f64 {
+    let nearest = |corner: DVec3| mesh.positions().iter().map(|p| p.distance(corner)).fold(f64::INFINITY, f64::min);
+    field.corners().map(nearest).into_iter().fold(0.0, f64::max)
+}
+
+#[test]
+fn dual_contouring_keeps_the_edges_and_corners_of_a_box() {
+    let lattice = Lattice::along_axes([31; 3], DVec3::splat(-1.0), DVec3::splat(2.0 / 30.0)).expect("a lattice");
+    let cell = 2.0 / 30.0;
+    let turned = Affine::from_rotation(AxisAngle::new(DVec3::new(1.0, 2.0, 3.0), 0.6).expect("an axis"));
+    let half = DVec3::new(0.52, 0.43, 0.61);
+    for (turn, straight) in [(Affine::IDENTITY, true), (turned, false)] {
+        let field = TurnedBox { half, turn };
+        let volume = 8.0 * half.x * half.y * half.z;
+        let slabs = FieldSlabs::new(&field, lattice);
+        let nets = ManifoldSurfaceNets::new().convert(&slabs).expect("a box").value;
+        let sampled = DualContouring::new().convert(&slabs).expect("a box");
+        let exact = DualContouring::new().field(&field, lattice, &Exec::default()).expect("a box");
+        for mesh in [&nets, &sampled.value, &exact.value] {
+            assert_eq!(check_closed(mesh, "a box").euler_characteristic(), 2);
+            assert_eq!(mesh.triangles().len(), nets.triangles().len());
+        }
+        let errors = [&nets, &sampled.value, &exact.value].map(|mesh| corner_error(mesh, &field) / cell);
+        let volumes = [&nets, &sampled.value, &exact.value].map(|mesh| (mesh.volume() / volume - 1.0).abs());
+        // Surface nets cut corners by a good part of a cell; Hermite data meets them.
+        assert!(errors[0] > 0.2, "{errors:?}");
+        // Distances are round beyond an edge, so crossings of samples near it are off.
+        assert!(errors[1] < 0.8 * errors[0] && errors[2] < 0.3 * errors[0], "{errors:?}");
+        assert!(volumes[1] < 0.7 * volumes[0] && volumes[2] < 0.2 * volumes[0], "{volumes:?}");
+        if straight {
+            assert!(errors[2] < 1e-9 && volumes[2] < 1e-9, "{errors:?} {volumes:?}");
+        }
+    }
+}
+
+/// On smooth shapes it converges as surface nets do; normals point outward.
+#[test]
+fn dual_contouring_of_a_ball_converges() {
+    let volume = 4.0 / 3.0 * std::f64::consts::PI * 0.7f64.powi(3);
+    let converter = DualContouring { normals: true, ..DualContouring::new() };
+    let errors = [20, 40, 80].map(|side| {
+        let mesh = converter.convert(&ball(side, 0.7)).expect("a ball").value;
+        assert_eq!(check_closed(&mesh, "a ball").euler_characteristic(), 2);
+        let normals = mesh.attribute(Domain::Vertex, NORMAL).expect("normals");
+        for (vertex, position) in mesh.positions().iter().enumerate() {
+            assert!(normals.vector(vertex).dot(*position) > 0.6);
+        }
+        (mesh.volume() / volume - 1.0).abs()
+    });
+    // At least of second order; the errors inside and outside of the ball cancel in part, so that they do not fall evenly.
+    assert!((0..3).all(|k| errors[k] < 1e-3 * 0.25f64.powi(k as i32)), "{errors:?}");
+}
+
+#[test]
+fn dual_contouring_of_noise_is_manifold_and_the_same_on_any_number_of_threads() {
+    let mut dice = Dice(3);
+    let dimensions = [40u32, 5, 70];
+    for strange in [false, true] {
+        let samples = (0..dimensions.iter().product())
+            .map(|_| if strange && dice.unit() < 0.1 { f32::NAN } else { dice.unit() as f32 - 0.5 })
+            .collect();
+        let source = grid(dimensions, samples);
+        let alone = DualContouring::new().convert_with(&source, &Exec::default().with_threads(Threads::Sequential));
+        let alone = alone.expect("noise");
+        check_closed(&alone.value, "noise");
+        assert!(alone.report.findings.iter().any(|finding| finding.code == "W-dual-contouring-held"));
+        let nets = nets(&source).value;
+        assert_eq!(nets.positions().len(), alone.value.positions().len());
+        for threads in [1, 2, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            assert!(pool.install(|| DualContouring::new().convert(&source)).expect("noise") == alone, "{threads}");
+        }
+    }
+}
+
+#[test]
+fn surface_nets_of_a_ball_agree_with_the_manifold_ones() {
+    for border in [Border::Closed, Border::Open] {
+        for (radius, mirror) in [(0.7, 1.0), (1.2, -1.0)] {
+            let source = ball(24, radius);
+            let source = on(Affine::from_scale(DVec3::new(1.0, mirror, 1.0)) * *source.lattice().placement(), &source);
+            let ours =
+                ManifoldSurfaceNets { border, ..ManifoldSurfaceNets::new() }.convert(&source).expect("a ball").value;
+            let converter = SurfaceNets { border, normals: true, ..SurfaceNets::new() };
+            let Converted { value: theirs, report } = converter.convert(&source).expect("a ball");
+            assert_eq!(theirs.triangles().len(), ours.triangles().len());
+            assert_eq!(report.find("non_manifold_edges"), Some(0.0));
+            let normals = theirs.attribute(Domain::Vertex, NORMAL).expect("normals");
+            assert!((0..normals.len()).all(|vertex| (normals.vector(vertex).length() - 1.0).abs() < 1e-9));
+            if border == Border::Closed {
+                check_closed(&theirs, "a ball");
+                assert!((theirs.volume() / ours.volume() - 1.0).abs() < 1e-4, "{} {}", theirs.volume(), ours.volume());
+            }
+            let mut pairs: [Vec<[i64; 3]>; 2] = [&ours, &theirs]
+                .map(|mesh| mesh.positions().iter().map(|p| (*p * 1e4).round().to_array().map(|x| x as i64)).collect());
+            pairs.iter_mut().for_each(|places| places.sort_unstable());
+            let near = pairs[0].iter().zip(&pairs[1]).filter(|(a, b)| (0..3).all(|k| (a[k] - b[k]).abs() <= 1)).count();
+            assert!(
+                near * 100 >= pairs[0].len() * 99 && pairs[0].len() == pairs[1].len(),
+                "{near} of {}",
+                pairs[0].len()
+            );
+        }
+    }
+}
+
+#[test]
+fn surface_nets_of_noise_say_that_they_are_not_manifold() {
+    let mut dice = Dice(12);
+    let samples =
+        (0..9 * 8 * 7).map(|_| if dice.unit() < 0.1 { f32::NAN } else { (dice.unit() as f32 - 0.5) * 3e38 }).collect();
+    let Converted { value: mesh, report } = SurfaceNets::new().convert(&grid([9, 8, 7], samples)).expect("noise");
+    let topology = Topology::of(&mesh, &Exec::default()).expect("a small mesh");
+    assert!(topology.boundary.edges().is_empty() && mesh.first_non_finite().is_none());
+    let counted = topology.non_manifold_edges.len();
+    let told = report.findings.iter().find(|finding| finding.code == "W-surface-nets-edges");
+    assert_eq!(told.map(|finding| finding.count), Some(counted as u64));
+    assert!(counted > 0 && mesh.volume() > 0.0);
+    assert!(report.findings.iter().any(|finding| finding.code == "W-iso-not-finite"));
 }

@@ -301,6 +301,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
     ),
     (
+        "W-dual-contouring-held",
+        "The point that fits the planes of a cell best lies outside of the cell, as with planes that nearly agree or with noise; the vertex was put at the nearest place in its cell.",
+    ),
+    (
         "W-face-turned",
         "Faces were turned by more than a right angle when vertices moved: the mesh is folded there. Ask for less, or start from a mesh that is nearer to what is wanted.",
     ),
@@ -424,6 +428,8 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-voxel-open",
         "The mesh is not closed, so inside and outside are not given by it alone. Inside is where the generalised winding number is above 1/2, which closes holes smoothly; there the deviation is not known.",
+        "W-surface-nets-edges",
+        "Edges of the result have more than two triangles, because two pieces of the surface pass through one cell and share its vertex. The method manifold-surface-nets gives each piece a vertex of its own.",
     ),
 ];
 

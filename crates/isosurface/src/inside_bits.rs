@@ -123,4 +123,20 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn one_strange_sample_anywhere_is_noticed() {
+        let level = Level { iso: 0.5, inside: Inside::Below };
+        for at in 0..200 {
+            for strange in [f32::NAN, f32::NEG_INFINITY, -2e37] {
+                let mut samples = vec![0.0; 200];
+                samples[at] = strange;
+                let mut words = [0u64; 4];
+                let packed = pack_row(&samples, level, &mut words);
+                let not_finite = usize::from(!strange.is_finite());
+                assert_eq!(packed, PackedRow { not_finite, tame: false }, "{at}");
+                assert_eq!(words[at / 64] >> (at % 64) & 1 == 1, strange.is_finite(), "{at}");
+            }
+        }
+    }
 }

@@ -40,14 +40,11 @@ fn eigen(matrix: DMat3) -> ([f64; 3], DMat3) {
             for row in &mut a {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }
-            for k in 0..3 {
-                (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
+            for rows in [&mut a, &mut vectors] {
+                let (x, y) = (DVec3::from(rows[p]), DVec3::from(rows[q]));
+                (rows[p], rows[q]) = ((x * c - y * s).to_array(), (x * s + y * c).to_array());
             }
             (a[p][q], a[q][p]) = (0.0, 0.0);
-            for k in 0..3 {
-                let (x, y) = (vectors[p][k], vectors[q][k]);
-                (vectors[p][k], vectors[q][k]) = (c * x - s * y, s * x + c * y);
-            }
         }
     }
     ([a[0][0], a[1][1], a[2][2]], DMat3::from_cols_array_2d(&vectors))

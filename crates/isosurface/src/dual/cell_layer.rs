@@ -89,8 +89,8 @@ fn find(frame: &Frame, lower: &[u64], upper: &[u64], active: &mut [u64], first: 
     let mut count = 0u64;
     let last = frame.cells(0).div_ceil(64);
     for (active, first) in active.chunks_exact_mut(stride).zip(first.chunks_exact_mut(stride)) {
-        for word in last.saturating_sub(1)..stride {
-            active[word] &= frame.mask(word, frame.cells(0));
+        for (word, active) in active.iter_mut().enumerate().skip(last.saturating_sub(1)) {
+            *active &= frame.mask(word, frame.cells(0));
         }
         for (active, first) in active.iter().zip(first) {
             *first = count as u32;

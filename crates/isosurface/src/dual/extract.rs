@@ -135,9 +135,9 @@ impl DualSurface {
             corners.as_flattened().iter().for_each(|&corner| number[corner as usize] = 0);
         }
         let mut kept = 0u32;
-        for at in 0..number.len() {
-            if number[at] == 0 {
-                number[at] = kept;
+        for (at, number) in number.iter_mut().enumerate() {
+            if *number == 0 {
+                *number = kept;
                 self.positions[kept as usize] = self.positions[at];
                 if let Some(normal) = self.normals.get(at).copied() {
                     self.normals[kept as usize] = normal;

@@ -122,7 +122,7 @@ mod tests {
             for columns in [1u32, 2, 62, 63, 64, 65, 126, 127, 128, 130] {
                 let frame = Frame::new([columns, 3, 1], closed);
                 let mut slice = SignSlice::default();
-                let sample = |i: u32| if (i * 7 + i / 5) % 3 == 0 { -1.0 } else { 1.0 };
+                let sample = |i: u32| if (i * 7 + i / 5).is_multiple_of(3) { -1.0 } else { 1.0 };
                 // Twice, so that nothing of the first time is left.
                 slice.fill(&vec![-1.0; 3 * columns as usize], level, &frame);
                 slice.fill(&(0..3 * columns).map(sample).collect::<Vec<f32>>(), level, &frame);
