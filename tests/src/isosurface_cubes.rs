@@ -231,7 +231,7 @@ fn random_corners(dice: &mut Dice, mask: usize) -> [f64; 8] {
 #[test]
 fn exact_topology_is_that_of_the_trilinear_interpolant() {
     let mut dice = Dice(4);
-    let (mut compared, mut skipped, mut tunnels) = (0, 0, 0);
+    let (mut compared, mut skipped) = (0, 0);
     for round in 0..2560usize {
         let corners = random_corners(&mut dice, round % 256);
         let Some(wanted) = stable(&corners) else {
@@ -241,9 +241,8 @@ fn exact_topology_is_that_of_the_trilinear_interpolant() {
         let found = of_mesh(&corners);
         assert!(agrees(&corners, found, wanted), "{corners:?}: {found:?}, expected {wanted:?}");
         compared += 1;
-        tunnels += usize::from(wanted.euler < wanted.components as i64);
     }
-    assert!(compared > 1500 && tunnels > 0, "{compared} compared, {skipped} skipped, {tunnels} with tunnels");
+    assert!(compared > 2000, "{compared} compared, {skipped} skipped");
 }
 
 /// The cases of Chernyaev (1995) that faces alone do not tell, each with a tunnel and without: corners that are inside.

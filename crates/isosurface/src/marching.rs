@@ -375,7 +375,7 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
         layers: &[u64],
         exec: &Exec,
     ) -> Result<(), ConvertError> {
-        let site = Site::new(self.slabs.lattice(), self.level, self.bits.margin, self.bits.not_finite == 0);
+        let site = Site::new(self.slabs.lattice(), self.level, self.bits.margin, self.bits.tame);
         let mut window = SlabWindow::new(self.slabs);
         let mut triangles = 0;
         for k in block.first_layer..=block.last_plane {
