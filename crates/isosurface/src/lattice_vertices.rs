@@ -90,8 +90,8 @@ impl<'a> Samples<'a> {
             own,
             if j + 1 < self.rows { Some(slab[at + columns]) } else { None },
         );
-        let slab = |place: usize| if let Some(slab) = self.slabs[place] { Some(slab[at]) } else { None };
-        let z = difference(slab(above), own, slab(2 + above));
+        let [before, behind] = [self.slabs[above], self.slabs[2 + above]];
+        let z = difference(before.map(|slab| slab[at]), own, behind.map(|slab| slab[at]));
         DVec3::new(x, y, z)
     }
 }

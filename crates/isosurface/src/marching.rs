@@ -219,10 +219,7 @@ fn write_vertices<const D: usize, const C: usize>(
             }
             let Some(edges) = edge_row(bits, direction, j, k) else { continue };
             let positions = &mut positions[start..end];
-            let normals = match &mut normals {
-                Some(normals) => Some(&mut normals[start..end]),
-                None => None,
-            };
+            let normals = normals.as_mut().map(|normals| &mut normals[start..end]);
             match direction {
                 1 => edges.vertices::<1>(site, samples, [j, k], positions, normals),
                 2 => edges.vertices::<2>(site, samples, [j, k], positions, normals),
