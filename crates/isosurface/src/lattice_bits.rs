@@ -28,6 +28,8 @@ pub(crate) struct LatticeBits {
     pub(crate) margin: usize,
     /// How many samples are NaN or infinite.
     pub(crate) not_finite: u64,
+    /// Whether all samples read so far are finite and small enough to be subtracted.
+    pub(crate) tame: bool,
     _memory: Reservation,
 }
 
@@ -40,7 +42,7 @@ impl LatticeBits {
         let words = (words_per_row as u64 * dimensions[1] as u64).saturating_mul(dimensions[2] as u64);
         let memory = exec.reserve_elements(words, 8)?;
         let words = vec![0u64; words as usize];
-        Ok(Self { words, words_per_row, dimensions, margin, not_finite: 0, _memory: memory })
+        Ok(Self { words, words_per_row, dimensions, margin, not_finite: 0, tame: true, _memory: memory })
     }
 
     /// Reads planes, counted with the margin.
@@ -54,7 +56,7 @@ impl LatticeBits {
         let [columns, _, slab_count] = slabs.lattice().dimensions().map(|count| count as usize);
         let (margin, words_per_row) = (self.margin, self.words_per_row);
         let slab_words = words_per_row * self.dimensions[1];
-        let not_finite = AtomicU64::new(0);
+        let (not_finite, wild) = (AtomicU64::new(0), AtomicU64::new(0));
         let words = &mut self.words[planes.start * slab_words..planes.end * slab_words];
         fill_chunks(exec, words, SLABS * slab_words, |first, part| {
             let mut buffer = Vec::new();
@@ -66,13 +68,15 @@ impl LatticeBits {
                 let packed = part[margin * words_per_row..].chunks_mut(at_once * words_per_row);
                 for (words, samples) in packed.zip(slab.chunks(at_once * columns)) {
                     exec.check()?;
-                    let strange = pack_rows(samples, columns, level, words, (words_per_row, margin));
+                    let [strange, untame] = pack_rows(samples, columns, level, words, (words_per_row, margin));
                     not_finite.fetch_add(strange, Ordering::Relaxed);
+                    wild.fetch_add(untame, Ordering::Relaxed);
                 }
             }
             Ok::<(), ConvertError>(())
         })?;
         self.not_finite += not_finite.into_inner();
+        self.tame &= wild.into_inner() == 0;
         Ok(())
     }
 
@@ -89,7 +93,8 @@ impl LatticeBits {
     }
 }
 
-/// Packs rows of samples, moves their bits up by the margin, and returns how many samples are not finite.
+/// Packs rows of samples, moves their bits up by the margin, and returns how many samples are not finite, and how many rows have
+/// some that are not tame.
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
 fn pack_rows(
     samples: &[f32],
@@ -97,15 +102,17 @@ fn pack_rows(
     level: Level,
     words: &mut [u64],
     (words_per_row, margin): (usize, usize),
-) -> u64 {
-    let mut not_finite = 0;
+) -> [u64; 2] {
+    let (mut not_finite, mut wild) = (0, 0);
     for (samples, row) in samples.chunks(columns).zip(words.chunks_mut(words_per_row)) {
-        not_finite += pack_row(samples, level, row).not_finite as u64;
+        let packed = pack_row(samples, level, row);
+        not_finite += packed.not_finite as u64;
+        wild += u64::from(!packed.tame);
         if margin == 1 {
             shift_up(row);
         }
     }
-    not_finite
+    [not_finite, wild]
 }
 
 /// Moves each bit to the next place.

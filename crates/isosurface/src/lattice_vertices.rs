@@ -12,19 +12,21 @@ pub(crate) struct Site {
     /// Maps gradients with respect to lattice coordinates to outward normals, but for their length.
     normals: DMat3,
     pub(crate) level: Level,
+    /// Whether all samples are finite and not large, as far as they were read.
+    tame: bool,
     /// The layers of outside samples around the lattice.
     pub(crate) margin: usize,
 }
 
 impl Site {
-    pub(crate) fn new(lattice: &Lattice, level: Level, margin: usize) -> Self {
+    pub(crate) fn new(lattice: &Lattice, level: Level, margin: usize, tame: bool) -> Self {
         let linear = lattice.placement().linear;
         // The adjugate's direction alone matters; scaled first, so that it neither overflows nor vanishes.
         let size = lattice.spacing().max_element();
         let scaled = linear * (1.0 / size);
         let outward = if level.inside == Inside::Below { 1.0 } else { -1.0 };
         let normals = scaled.inverse().transpose() * outward;
-        Self { origin: lattice.placement().translation, steps: lattice.steps(), normals, level, margin }
+        Self { origin: lattice.placement().translation, steps: lattice.steps(), normals, level, tame, margin }
     }
 
     /// The place of lattice coordinates. It depends on their values alone, so that two crossings at one sample coincide.
@@ -88,8 +90,8 @@ impl<'a> Samples<'a> {
             own,
             if j + 1 < self.rows { Some(slab[at + columns]) } else { None },
         );
-        let slab = |place: usize| if let Some(slab) = self.slabs[place] { Some(slab[at]) } else { None };
-        let z = difference(slab(above), own, slab(2 + above));
+        let [before, behind] = [self.slabs[above], self.slabs[2 + above]];
+        let z = difference(before.map(|slab| slab[at]), own, behind.map(|slab| slab[at]));
         DVec3::new(x, y, z)
     }
 }
@@ -176,7 +178,7 @@ impl EdgeRow<'_> {
                 let column = i.wrapping_sub(margin);
                 let ends = (from.get(column), to.get(column.wrapping_add(dx)));
                 let (position, gradient) = if let (Some(&a), Some(&b)) = ends {
-                    let part = site.level.crossing(a, b);
+                    let part = if site.tame { site.level.crossing_of_finite(a, b) } else { site.level.crossing(a, b) };
                     let x = if dx == 1 { column as f64 + part } else { column as f64 };
                     let y = if dy == 1 { row as f64 + part } else { row as f64 };
                     let z = if dz == 1 { slab as f64 + part } else { slab as f64 };

@@ -197,24 +197,39 @@ fn write_triangles<const D: usize, const C: usize>(layer: &Layer<'_, D, C>, out:
     layer.write(out, |_, _, _, _| None);
 }
 
-/// Writes the vertices on the edges that start in a row of samples.
+/// Writes the vertices on the edges that start in a plane of samples; `first` is the number of the first that there is room for.
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-fn write_vertices(
+fn write_vertices<const D: usize, const C: usize>(
+    layer: &Layer<'_, D, C>,
     site: &Site,
     samples: &Samples<'_>,
-    (edges, direction): (&EdgeRow<'_>, u8),
-    at: [usize; 2],
+    first: u32,
     positions: &mut [[f64; 3]],
-    normals: Option<&mut [[f64; 3]]>,
+    mut normals: Option<&mut [[f64; 3]]>,
 ) {
-    match direction {
-        1 => edges.vertices::<1>(site, samples, at, positions, normals),
-        2 => edges.vertices::<2>(site, samples, at, positions, normals),
-        3 => edges.vertices::<3>(site, samples, at, positions, normals),
-        4 => edges.vertices::<4>(site, samples, at, positions, normals),
-        5 => edges.vertices::<5>(site, samples, at, positions, normals),
-        6 => edges.vertices::<6>(site, samples, at, positions, normals),
-        _ => edges.vertices::<7>(site, samples, at, positions, normals),
+    let (bits, k) = (layer.bits, layer.k);
+    let row_count = bits.dimensions[1];
+    for j in 0..row_count {
+        let row = &layer.rows[k * row_count + j];
+        for (number, &direction) in layer.pattern.directions.iter().enumerate() {
+            let end = if number + 1 < D { row.edges[number + 1] } else { row.inner };
+            let (start, end) = ((row.edges[number] - first) as usize, (end - first) as usize);
+            if start == end {
+                continue;
+            }
+            let Some(edges) = edge_row(bits, direction, j, k) else { continue };
+            let positions = &mut positions[start..end];
+            let normals = normals.as_mut().map(|normals| &mut normals[start..end]);
+            match direction {
+                1 => edges.vertices::<1>(site, samples, [j, k], positions, normals),
+                2 => edges.vertices::<2>(site, samples, [j, k], positions, normals),
+                3 => edges.vertices::<3>(site, samples, [j, k], positions, normals),
+                4 => edges.vertices::<4>(site, samples, [j, k], positions, normals),
+                5 => edges.vertices::<5>(site, samples, [j, k], positions, normals),
+                6 => edges.vertices::<6>(site, samples, [j, k], positions, normals),
+                _ => edges.vertices::<7>(site, samples, [j, k], positions, normals),
+            }
+        }
     }
 }
 
@@ -357,7 +372,7 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
         layers: &[u64],
         exec: &Exec,
     ) -> Result<(), ConvertError> {
-        let site = Site::new(self.slabs.lattice(), self.level, self.bits.margin);
+        let site = Site::new(self.slabs.lattice(), self.level, self.bits.margin, self.bits.tame);
         let mut window = SlabWindow::new(self.slabs);
         let mut triangles = 0;
         for k in block.first_layer..=block.last_plane {
@@ -380,7 +395,8 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
                 }
             }
             self.with_samples(&mut window, k, self.normals, |samples| {
-                vertices.write_plane(self, samples, rows, k);
+                let normals = vertices.normals.as_deref_mut();
+                write_vertices(&layer, &site, samples, block.first_vertex, vertices.positions, normals);
                 if let Some(topology) = &self.topology {
                     self.write_special(topology, &layer, samples, &mut vertices, out);
                 }
@@ -433,32 +449,6 @@ struct Vertices<'a> {
 }
 
 impl Vertices<'_> {
-    /// Writes the vertices on edges that start in a plane of samples.
-    fn write_plane<S: Slabs + ?Sized, const D: usize, const C: usize>(
-        &mut self,
-        marching: &Marching<'_, S, D, C>,
-        samples: &Samples<'_>,
-        rows: &[Row<D>],
-        k: usize,
-    ) {
-        let row_count = marching.bits.dimensions[1];
-        for j in 0..row_count {
-            let row = &rows[k * row_count + j];
-            for (number, &direction) in marching.pattern.directions.iter().enumerate() {
-                let end = row.edges.get(number + 1).copied().unwrap_or(row.inner);
-                let range = (row.edges[number] - self.first) as usize..(end - self.first) as usize;
-                if range.is_empty() {
-                    continue;
-                }
-                if let Some(edges) = edge_row(&marching.bits, direction, j, k) {
-                    let normals = self.normals.as_deref_mut().map(|normals| &mut normals[range.clone()]);
-                    let positions = &mut self.positions[range];
-                    write_vertices(self.site, samples, (&edges, direction), [j, k], positions, normals);
-                }
-            }
-        }
-    }
-
     /// Writes a vertex inside a cell.
     fn write_inner(&mut self, samples: &Samples<'_>, cell: [usize; 3], number: u32, [x, y, z]: [f64; 3]) {
         let margin = self.site.margin as f64;
