@@ -53,4 +53,5 @@ mod support;
 mod topology;
 mod triangle_pairs;
 mod verification;
+mod volume_files;
 mod winding;
