@@ -93,6 +93,18 @@ fn directions_survive_exactly_in_nrrd_and_within_the_bound_elsewhere() {
     }
 }
 
+/// Other readers want to know how many packed bytes follow.
+#[test]
+fn packed_metaimages_say_how_many_bytes_follow() {
+    let lattice = Lattice::along_axes([30, 20, 10], DVec3::ZERO, DVec3::ONE).unwrap();
+    let own = VoxelGrid::try_new(lattice, Samples::U8((0..6000).map(|at| (at / 7) as u8).collect()), Quantity::Density);
+    let (bytes, _) = written(&Shape::new(Part::new(own.unwrap())), "mha", true);
+    let end = b"ElementDataFile = LOCAL\n";
+    let data = bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
+    let said = format!("\nCompressedDataSize = {}\n", bytes.len() - data);
+    assert!(String::from_utf8_lossy(&bytes[..data]).contains(&said), "{said}");
+}
+
 /// Where a part places its grid, the file has it.
 #[test]
 fn placements_units_and_words_are_kept() {
