@@ -130,7 +130,8 @@ fn placements_units_and_words_are_kept() {
 #[test]
 fn raw_samples_are_read_as_options_say() {
     let numbers: Vec<i64> = (0..24).map(|at| at * 5).collect();
-    let types: [(ScalarType, fn(i64) -> Vec<u8>); 10] = [
+    type Bytes = fn(i64) -> Vec<u8>;
+    let types: [(ScalarType, Bytes); 10] = [
         (ScalarType::I8, |x| (x as i8).to_be_bytes().to_vec()),
         (ScalarType::U8, |x| (x as u8).to_be_bytes().to_vec()),
         (ScalarType::I16, |x| (x as i16).to_be_bytes().to_vec()),
