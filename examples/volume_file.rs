@@ -4,6 +4,8 @@
 //! cargo run --release --example volume_file
 //! ```
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 
 use shapeloom::io::{ReadContext, WriteContext, detect, format_by_id, read, write};
