@@ -57,4 +57,5 @@ mod topology;
 mod triangle_pairs;
 mod verification;
 mod voxelisation;
+mod volume_files;
 mod winding;

@@ -54,7 +54,7 @@ fn what_is_wrong_with_a_header_is_named_with_its_line() {
         (mha, "NDims = 3", "NDims = 2", "E-metaimage-dimension", "line 2"),
         (vtk, "SPACING 1 1 1", "SPACING 1 nan 1", "E-volume-spacing", "line 6"),
         (vtk, "STRUCTURED_POINTS", "POLYDATA", "E-vtk-feature", "line 4"),
-        (vtk, "7 8\n", "7\n", "E-volume-truncated", "line 12"),
+        (vtk, "7 8\n", "7.5\n", "E-volume-truncated", "line 12"),
         (vtk, "6 7 8", "6 x 8", "E-volume-number", "line 11"),
         (vtk, "POINT_DATA 8", "POINT_DATA 9", "E-vtk-count", "line 8"),
         (vti, "Spacing=\"1 1 1\"", "Spacing=\"1 -1 1\"", "E-volume-spacing", "line 2"),

@@ -128,3 +128,46 @@ fn readers_of_heights_take_memory_in_proportion_to_their_samples() {
         assert!(found <= most, "{name}: {} bytes took {found}, more than {most}", bytes.len());
     }
 }
+
+/// The same of volumes. Of compressed ones the memory follows from their header, which has a limit of its own.
+#[test]
+fn readers_of_volumes_take_memory_in_proportion_to_their_samples() {
+    use std::io::Write;
+    let header = |kind: &str, size: usize, encoding: &str| {
+        format!(
+            "NRRD0004\ntype: {kind}\ndimension: 3\nsizes: {size} {size} {size}\nendian: little\nencoding: {encoding}\n\n"
+        )
+    };
+    let mut zeros =
+        flate2::write::GzEncoder::new(header("uint8", 256, "gzip").into_bytes(), flate2::Compression::best());
+    // The header is not packed: it is there before the first packed byte.
+    zeros.write_all(&vec![0; 256 * 256 * 256]).expect("a buffer");
+    let zeros = zeros.finish().expect("a buffer");
+    let text = header("double", 110, "ascii") + &"0 ".repeat(110 * 110 * 110);
+    let comments = format!("NRRD0004\n{}{}1", "# a\n".repeat(300_000), &header("uint8", 1, "raw")[9..]);
+    let arrays = "<DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 </DataArray>".repeat(20_000);
+    let arrays = format!(
+        "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 0 0 0 0 0\"><Piece><PointData>{arrays}</PointData></Piece>\
+         </ImageData></VTKFile>"
+    );
+    let attributes = "a=\"\" ".repeat(200_000);
+    let attributes = arrays.replace("<PointData>", &format!("<PointData {attributes}>"));
+    let claim = header("double", 2_000_000, "gzip");
+    let files: Vec<(&str, Vec<u8>, u64)> = vec![
+        ("zeros.nrrd", zeros, 256 * 256 * 256),
+        ("text.nrrd", text.into_bytes(), 0),
+        ("comments.nrrd", comments.into_bytes(), 0),
+        ("arrays.vti", arrays.into_bytes(), 0),
+        ("attributes.vti", attributes.into_bytes(), 0),
+        ("claim.nrrd", claim.into_bytes(), 0),
+    ];
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for (name, bytes, samples) in files {
+        let path = folder.path().join(name);
+        fs::write(&path, &bytes).expect("a file");
+        let path = path.display().to_string();
+        let Some(found) = peak(&["info", &path]) else { return };
+        let most = BASE + 40 * bytes.len() as u64 + 2 * samples;
+        assert!(found <= most, "{name}: {} bytes took {found}, more than {most}", bytes.len());
+    }
+}

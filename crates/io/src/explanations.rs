@@ -391,6 +391,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The distances between the samples of a volume are finite numbers above 0. Mend the spacing in the header.",
     ),
     (
+        "E-volume-stack",
+        "The slices of a volume are pictures of one size and depth. Their names differ in a number before the extension, such as slice_000.png, without a gap; the first one is read with --set stack=true.",
+    ),
+    (
         "E-volume-trailing",
         "Unpacking gives more bytes than the header of a volume says that there are samples. Nothing beyond them was unpacked. Mend the sizes or the type in the header.",
     ),
@@ -642,6 +646,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-volume-rounded",
         "Samples are kept in 8 or 16 bits without sign or in single precision. Wider numbers were rounded; the message says by how much at most.",
+    ),
+    (
+        "W-volume-slices",
+        "How many slices were read, and which was the last: those after a missing number are another stack.",
     ),
     ("W-volume-trailing", "More bytes follow after the samples of a volume than its header says. They were not read."),
     ("W-vti-piece", "A VTI file is one piece of a larger whole, whose other pieces are in other files."),

@@ -171,6 +171,7 @@ fn usual_advice(code: &str) -> Option<&'static str> {
         "line" => "break the line into shorter ones, or get another copy: text has no lines of this length",
         "strip" => "get a complete copy of the file, or write it anew with another program",
         "spacing" => "mend the distances between samples in the header: they are above 0",
+        "stack" => "give the slices one size and depth, and names with numbers that follow each other",
         "trailing" => "mend the sizes or the type in the header, or get another copy of the file",
         "xml" => "mend the text at this place: it is no XML",
         "json" => "mend the text at this place: it is no JSON",

@@ -124,7 +124,7 @@ impl<'a> Header<'a> {
             };
             let (key, value) = (content[..equals].trim_ascii(), content[equals + 1..].trim_ascii());
             let same = |word: &&str| word.as_bytes().eq_ignore_ascii_case(key);
-            let Some(names) = KEYS.iter().find(|names| names.iter().any(|name| same(&name))) else {
+            let Some(names) = KEYS.iter().find(|names| names.iter().any(same)) else {
                 if key == b"Comment" && value.starts_with(b"quantity=") {
                     header.quantity = &value[b"quantity=".len()..];
                     continue;

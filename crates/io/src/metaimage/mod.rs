@@ -7,8 +7,6 @@
 
 mod header;
 mod read;
-#[cfg(test)]
-mod tests;
 mod write;
 
 use shapeloom_shape::Kind;

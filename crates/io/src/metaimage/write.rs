@@ -52,14 +52,13 @@ pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) 
     text += &format!("ElementSpacing = {}\nDimSize = {x} {y} {z}\nElementType = {kind}\n", three(spacing));
     out.write_all(text.as_bytes())?;
     if context.options.compress {
-        // Its tables and windows; the number of packed bytes, which the key CompressedDataSize may say, is not needed.
+        // Its tables and windows. Readers need the number of packed bytes before them: packing twice takes time instead of
+        // memory for the whole.
         let _memory = context.exec.reserve(1 << 19)?;
-        out.write_all(b"ElementDataFile = LOCAL\n")?;
-        let mut encoder = ZlibEncoder::new(out, flate2::Compression::default());
-        let mut sink = Sink::new(&mut encoder, &context.exec);
-        one.put_samples(&mut sink, false)?;
-        sink.finish()?;
-        encoder.finish()?;
+        let mut counter = Counter(0);
+        pack(&one, &mut counter, context)?;
+        out.write_all(format!("CompressedDataSize = {}\nElementDataFile = LOCAL\n", counter.0).as_bytes())?;
+        pack(&one, out, context)?;
     } else {
         out.write_all(b"ElementDataFile = LOCAL\n")?;
         let mut sink = Sink::new(out, &context.exec);
@@ -68,6 +67,30 @@ pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) 
     }
     report.figure("samples", one.lattice.samples() as f64);
     Ok(report)
+}
+
+/// How many bytes were written.
+struct Counter(u64);
+
+impl Write for Counter {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The samples, compressed.
+fn pack(one: &OneGrid<'_>, out: &mut dyn Write, context: &WriteContext) -> Result<(), WriteError> {
+    let mut encoder = ZlibEncoder::new(out, flate2::Compression::default());
+    let mut sink = Sink::new(&mut encoder, &context.exec);
+    one.put_samples(&mut sink, false)?;
+    sink.finish()?;
+    encoder.finish()?;
+    Ok(())
 }
 
 fn unit_word(meters: f64) -> Option<&'static str> {

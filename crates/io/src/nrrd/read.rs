@@ -54,7 +54,7 @@ fn scalar_of(word: &[u8]) -> Option<Scalar> {
         (Scalar::F64, &["double"]),
     ];
     let same = |known: &&str| known.as_bytes() == word;
-    words.into_iter().find(|(_, known)| known.iter().any(|known| same(&known))).map(|(scalar, _)| scalar)
+    words.into_iter().find(|(_, known)| known.iter().any(same)).map(|(scalar, _)| scalar)
 }
 
 fn volume(

@@ -26,7 +26,7 @@ pub(crate) const FORMAT: Format = Format {
     precision: Precision::F64,
     kinds: &[Kind::HeightField],
     keeps: &[Keeps::UpAxis, Keeps::Units],
-    read_options: &["encoding", "height", "spacing", "exaggeration"],
+    read_options: &["encoding", "height", "spacing", "exaggeration", "stack", "voxel_size"],
     write_options: &[],
     sniff: |input| if input.starts_with(chunks::SIGNATURE) { Sniff::Certain } else { Sniff::No },
     reads: Some(read::read),

@@ -13,6 +13,7 @@ use crate::heights::{
     shape_of,
 };
 use crate::memory::Memory;
+use crate::volumes::{Plane, Scalar, read_stack};
 use crate::{Fault, HeightEncoding, ReadContext, ReadError, ReadShape};
 
 /// Compressed data gives at most so many times its bytes (RFC 1951: 258 bytes for two bits).
@@ -20,20 +21,12 @@ const MOST_FROM_A_BYTE: u64 = 1032;
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
     check_options(&context.options)?;
-    let mut findings = Findings::default();
-    let chunks = Chunks::read(input, &mut findings)?;
-    let place = Place::Byte(chunks.header_at);
-    let (columns, rows) = (u64::from(chunks.columns), u64::from(chunks.rows));
-    let (columns, rows) = check_size(columns, rows, place.clone(), "chunk IHDR", input.len(), context)?;
-    let bytes = (u64::from(columns) * u64::from(chunks.bits)).div_ceil(8) * u64::from(rows);
-    let most = chunks.data.saturating_mul(MOST_FROM_A_BYTE);
-    if bytes > most {
-        let found = format!("{columns} × {rows} samples of {} bits in {} bytes", chunks.bits, chunks.data);
-        let expected = "no more than compressed data can hold";
-        return Err(Fault::new("E-png-claim", place, found, expected).within("chunk IHDR").into());
+    if context.options.stack {
+        return read_stack(input, context, plane);
     }
-
+    let mut findings = Findings::default();
     let mut memory = Memory::new(&context.exec);
+    let (chunks, (columns, rows)) = sized(input, context, &mut findings)?;
     let (raw, full) = pixels(input, &chunks, (columns, rows), context, &mut memory, &mut findings)?;
     let options = &context.options;
     let encoded = options.encoding != HeightEncoding::Grey;
@@ -61,6 +54,40 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     let mut shape = shape_of(field);
     shape.units = size.map(|_| Units::METERS);
     Ok(ReadShape { findings, ..ReadShape::new(shape) })
+}
+
+/// The chunks, and the size that is checked against them.
+fn sized(input: &[u8], context: &ReadContext, findings: &mut Findings) -> Result<(Chunks, (u32, u32)), ReadError> {
+    let chunks = Chunks::read(input, findings)?;
+    let place = Place::Byte(chunks.header_at);
+    let (columns, rows) = (u64::from(chunks.columns), u64::from(chunks.rows));
+    let (columns, rows) = check_size(columns, rows, place.clone(), "chunk IHDR", input.len(), context)?;
+    let bytes = (u64::from(columns) * u64::from(chunks.bits)).div_ceil(8) * u64::from(rows);
+    let most = chunks.data.saturating_mul(MOST_FROM_A_BYTE);
+    if bytes > most {
+        let found = format!("{columns} × {rows} samples of {} bits in {} bytes", chunks.bits, chunks.data);
+        let expected = "no more than compressed data can hold";
+        return Err(Fault::new("E-png-claim", place, found, expected).within("chunk IHDR").into());
+    }
+    Ok((chunks, (columns, rows)))
+}
+
+/// The picture as a slice of a volume.
+fn plane(
+    input: &[u8],
+    context: &ReadContext,
+    findings: &mut Findings,
+    take: &mut dyn FnMut(Plane) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let mut memory = Memory::new(&context.exec);
+    let (chunks, (columns, rows)) = sized(input, context, findings)?;
+    let (values, full) = pixels(input, &chunks, (columns, rows), context, &mut memory, findings)?;
+    let scalar = match (context.options.encoding, full) {
+        (HeightEncoding::Grey, 255) => Scalar::U8,
+        (HeightEncoding::Grey, _) => Scalar::U16,
+        _ => Scalar::F32,
+    };
+    take(Plane { columns, rows, scalar, values })
 }
 
 /// The numbers of all pixels, row by row, and the largest that they can be.

@@ -4,8 +4,8 @@
 //! dimension is the fastest.
 
 mod read;
-#[cfg(test)]
-mod tests;
+
+pub(crate) use read::voxel_size;
 
 use shapeloom_shape::Kind;
 

@@ -6,8 +6,6 @@
 //! one is repeated, one above says how many follow as they are, less 128; 0 ends the slice.
 
 mod read;
-#[cfg(test)]
-mod tests;
 
 use shapeloom_shape::Kind;
 

@@ -30,7 +30,7 @@ pub(crate) const FORMAT: Format = Format {
     precision: Precision::F64,
     kinds: &[Kind::HeightField],
     keeps: &[Keeps::UpAxis, Keeps::Units],
-    read_options: &["encoding", "height", "spacing", "exaggeration"],
+    read_options: &["encoding", "height", "spacing", "exaggeration", "stack", "voxel_size"],
     write_options: &[],
     sniff: |input| match input {
         [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => Sniff::Certain,

@@ -16,6 +16,7 @@ use crate::heights::{
     room, shape_of,
 };
 use crate::memory::Memory;
+use crate::volumes::{Plane, Scalar, read_stack};
 use crate::{Fault, HeightEncoding, ReadContext, ReadError, ReadShape};
 
 /// LZW gives at most about 1365 bytes for one, deflate 1032.
@@ -25,8 +26,71 @@ const POLLED: usize = 1 << 14;
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
     check_options(&context.options)?;
+    if context.options.stack {
+        return read_stack(input, context, planes);
+    }
     let mut findings = Findings::default();
     let mut memory = Memory::new(&context.exec);
+    let stopped = Stopped::default();
+    let (decoder, limits) = open(input, context, &stopped, &mut memory)?;
+    let image = image(decoder, limits, input.len(), context, &stopped, &mut memory, &mut findings)?;
+    if image.decoder.more_images() {
+        let message = "the file has several images: the first was read";
+        findings.push("W-tiff-images", Severity::Note, Place::Whole, message);
+    }
+    let shape = placed(image.raw, &image.kind, image.size, &image.geo, context, &mut findings)?;
+    Ok(ReadShape { findings, ..ReadShape::new(shape) })
+}
+
+/// Every image of a file as a slice of a volume.
+fn planes(
+    input: &[u8],
+    context: &ReadContext,
+    findings: &mut Findings,
+    take: &mut dyn FnMut(Plane) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let mut held = Memory::new(&context.exec);
+    let stopped = Stopped::default();
+    let (mut decoder, limits) = open(input, context, &stopped, &mut held)?;
+    for number in 0u32.. {
+        let mut memory = Memory::new(&context.exec);
+        let named = |error: ReadError| match error {
+            ReadError::Input(mut fault) if number > 0 => {
+                let within = fault.within.take().unwrap_or_default();
+                ReadError::Input(fault.within(within.replacen("image 0", &format!("image {number}"), 1)))
+            }
+            other => other,
+        };
+        let found = image(decoder, limits.clone(), input.len(), context, &stopped, &mut memory, findings);
+        let Image { mut raw, kind, size: (columns, rows), decoder: rest, .. } = found.map_err(named)?;
+        let scalar = match (kind.unsigned && context.options.encoding == HeightEncoding::Grey, kind.bits) {
+            (true, 8) => Scalar::U8,
+            (true, 16) => Scalar::U16,
+            _ => Scalar::F32,
+        };
+        if kind.inverted {
+            raw.iter_mut().for_each(|value| *value = f64::from(kind.full()) - *value);
+        }
+        take(Plane { columns, rows, scalar, values: raw })?;
+        decoder = rest;
+        if !decoder.more_images() {
+            break;
+        }
+        decoder.inner().end_at(u64::MAX);
+        let next = decoder.next_image().map_err(told);
+        stopped.check()?;
+        next?;
+    }
+    Ok(())
+}
+
+/// The decoder of a file, with the limits that it keeps.
+fn open<'a>(
+    input: &'a [u8],
+    context: &'a ReadContext,
+    stopped: &'a Stopped,
+    memory: &mut Memory<'_>,
+) -> Result<(Decoder<Source<'a>>, Limits), ReadError> {
     if input.len() < 8 {
         let place = Place::Byte(input.len() as u64);
         return Err(Fault::new("E-tiff-truncated", place, "the end of the file", "a header of 8 bytes").into());
@@ -35,8 +99,7 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     let mut limits = Limits::default();
     limits.ifd_value_size = input.len();
     memory.take(input.len(), 2)?;
-    let stopped = Stopped::default();
-    let source = Source::new(input, &context.exec, &stopped);
+    let source = Source::new(input, &context.exec, stopped);
     let decoder = Decoder::new(source).map_err(|error| match error {
         // Before this the limits cannot be set.
         TiffError::LimitsExceeded => {
@@ -47,15 +110,36 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
         other => told(other),
     });
     stopped.check()?;
-    let mut decoder = decoder?.with_limits(limits.clone());
+    Ok((decoder?.with_limits(limits.clone()), limits))
+}
+
+/// An image with what its numbers are.
+struct Image<'a> {
+    raw: Vec<f64>,
+    kind: Kind,
+    size: (u32, u32),
+    geo: Geo,
+    decoder: Decoder<Source<'a>>,
+}
+
+/// The image at which a decoder stands.
+fn image<'a>(
+    mut decoder: Decoder<Source<'a>>,
+    mut limits: Limits,
+    length: usize,
+    context: &ReadContext,
+    stopped: &Stopped,
+    memory: &mut Memory<'_>,
+    findings: &mut Findings,
+) -> Result<Image<'a>, ReadError> {
     let (columns, rows) = decoder.dimensions().map_err(told)?;
     let place = Place::Whole;
-    let (columns, rows) = check_size(u64::from(columns), u64::from(rows), place, "image 0", input.len(), context)?;
+    let (columns, rows) = check_size(u64::from(columns), u64::from(rows), place, "image 0", length, context)?;
     let kind = Kind::of(&mut decoder)?;
     let count = columns as usize * rows as usize;
     let bytes = (count as u64).saturating_mul(kind.pixel_bytes());
-    if bytes > (input.len() as u64).saturating_mul(MOST_FROM_A_BYTE) {
-        let found = format!("{columns} × {rows} samples in {} bytes", input.len());
+    if bytes > (length as u64).saturating_mul(MOST_FROM_A_BYTE) {
+        let found = format!("{columns} × {rows} samples in {} bytes", length);
         let expected = "no more than compressed data can hold";
         return Err(Fault::new("E-tiff-claim", Place::Whole, found, expected).within("image 0").into());
     }
@@ -70,18 +154,11 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
             format!("the tag GDAL_NODATA is {text}, which is no number: no samples were taken as holes by it");
         findings.push("W-tiff-nodata", Severity::Warning, Place::Whole, message);
     }
-    let pieces =
-        Pieces::check(&mut decoder, (columns, rows), kind.bits, input.len() as u64, &mut memory, &mut findings)?;
+    let pieces = Pieces::check(&mut decoder, (columns, rows), kind.bits, length as u64, memory, findings)?;
     stopped.check()?;
-    let raw = samples(&mut decoder, &pieces, &kind, (columns, rows), &geo, context, &mut memory, &mut findings);
+    let raw = samples(&mut decoder, &pieces, &kind, (columns, rows), &geo, context, memory, findings);
     stopped.check()?;
-    let raw = raw?;
-    if decoder.more_images() {
-        let message = "the file has several images: the first was read";
-        findings.push("W-tiff-images", Severity::Note, Place::Whole, message);
-    }
-    let shape = placed(raw, &kind, (columns, rows), &geo, context, &mut findings)?;
-    Ok(ReadShape { findings, ..ReadShape::new(shape) })
+    Ok(Image { raw: raw?, kind, size: (columns, rows), geo, decoder })
 }
 
 /// What the numbers of the file are.

@@ -5,7 +5,7 @@ use shapeloom_voxels::Samples;
 
 use super::Scalar;
 use crate::ReadError;
-use crate::memory::Memory;
+use crate::memory::{Memory, make_room};
 
 /// Samples that arrive piece by piece. What is neither `u8` nor `u16` becomes single precision; what that changes, and
 /// what is not finite, is counted.
@@ -57,6 +57,17 @@ impl Intake {
             largest_error: 0.0,
             not_finite: Tally::default(),
         })
+    }
+
+    /// Room for more samples.
+    pub(crate) fn more(&mut self, count: usize, memory: &mut Memory<'_>) -> Result<(), ReadError> {
+        match &mut self.samples {
+            Samples::U8(values) => make_room(memory, values, count)?,
+            Samples::U16(values) => make_room(memory, values, count)?,
+            Samples::F32(values) => make_room(memory, values, count)?,
+            Samples::Bits(_) => {}
+        }
+        Ok(())
     }
 
     /// How many samples there are so far.

@@ -11,6 +11,9 @@ mod neighbor;
 mod one_grid;
 mod payload;
 mod scalar;
+mod stack;
+#[cfg(test)]
+mod tests;
 mod text;
 
 pub(crate) use base64::decode_base64;
@@ -20,6 +23,7 @@ pub(crate) use neighbor::open_beside;
 pub(crate) use one_grid::{OneGrid, plain, rounding_words, three};
 pub(crate) use payload::{Coding, MOST_FROM_A_BYTE, Packing, Payload};
 pub(crate) use scalar::Scalar;
+pub(crate) use stack::{Plane, read_stack};
 pub(crate) use text::text_samples;
 
 /// Numbers with something between.

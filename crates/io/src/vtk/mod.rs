@@ -5,8 +5,6 @@
 //! their names say. The format has no directions: axes run along those of space.
 
 mod read;
-#[cfg(test)]
-mod tests;
 mod write;
 
 use shapeloom_shape::Kind;

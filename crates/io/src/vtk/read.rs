@@ -306,7 +306,7 @@ fn packed_bits(
             chunk.iter().enumerate().fold(0u64, |word, (at, byte)| word | u64::from(byte.reverse_bits()) << (8 * at));
         bits.push(word);
     }
-    if count % 64 != 0
+    if !count.is_multiple_of(64)
         && let Some(last) = bits.last_mut()
     {
         *last &= (1 << (count % 64)) - 1;
