@@ -48,12 +48,8 @@ fn middle(grid: &VoxelGrid) -> Vec<shapeloom::render::SceneMesh> {
     let half = grid.lattice().spacing().truncate() * 0.5;
     let from = grid.lattice().position([0, 0, slabs / 2]);
     let to = grid.lattice().position([columns - 1, rows - 1, slabs / 2]);
-    let slice = Slice {
-        from: from.truncate() - half,
-        to: to.truncate() + half,
-        height: from.z,
-        columns: columns as usize,
-    };
+    let slice =
+        Slice { from: from.truncate() - half, to: to.truncate() + half, height: from.z, columns: columns as usize };
     let sample = |at: u32| f64::from(grid.sample([at % columns, (at / columns).min(rows - 1), slabs / 2]));
     let values: Vec<f64> = (0..slice.points().len() as u32).map(sample).collect();
     let shade = |value: f64| {

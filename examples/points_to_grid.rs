@@ -32,13 +32,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         let lattice = made.value.lattice();
         let volume = if method.weight == PointWeight::Count { 1.0 } else { lattice.placement().determinant() };
         let sum: f64 = (0..lattice.samples()).map(|at| f64::from(made.value.samples().get(at))).sum();
-        println!("{words}: {} samples of {}, {:.2} points", lattice.samples(), made.value.samples().name(), sum * volume);
+        println!(
+            "{words}: {} samples of {}, {:.2} points",
+            lattice.samples(),
+            made.value.samples().name(),
+            sum * volume
+        );
         println!("  from {:?}", made.value.range().finite);
         let is_dense = |cell: [u32; 3]| f64::from(made.value.sample(cell)) >= at_least;
         let mut cells = boxes(&made.value, is_dense, [0.075, 0.24, 0.48]);
         cells.positions.iter_mut().for_each(|position| position.x += x);
         scene.surfaces.push(cells);
     }
-    println!("{}", output.draw("points_to_grid", &scene, [-70.0, 40.0], Picture::new())?.display());
+    println!("{}", output.draw("points_to_grid", &scene, [0.0, 45.0], Picture::new())?.display());
     Ok(())
 }

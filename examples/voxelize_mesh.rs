@@ -31,7 +31,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (n, (words, mode, rule, color)) in ways.into_iter().enumerate() {
         let made = VoxelizeMesh { mode, rule, resolution: 48, ..VoxelizeMesh::new() }.convert(&mesh)?;
         let full = made.report.find("full_cells").unwrap_or(0.0);
-        println!("{words}: {full} full cells, {} bytes, deviation {}", made.value.memory_bytes(), made.report.deviation);
+        println!(
+            "{words}: {full} full cells, {} bytes, deviation {}",
+            made.value.memory_bytes(),
+            made.report.deviation
+        );
         println!("  {}", made.report.basis);
         // Cut open, to see what is inside.
         let middle = made.value.lattice().dimensions()[1] / 2;
@@ -41,6 +45,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         cells.positions.iter_mut().for_each(|position| *position += shift);
         scene.surfaces.push(cells);
     }
-    println!("{}", output.draw("voxelize_mesh", &scene, [-90.0, 25.0], Picture::new())?.display());
+    println!("{}", output.draw("voxelize_mesh", &scene, [-12.0, 25.0], Picture::new())?.display());
     Ok(())
 }
