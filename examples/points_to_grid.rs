@@ -44,6 +44,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         cells.positions.iter_mut().for_each(|position| position.x += x);
         scene.surfaces.push(cells);
     }
-    println!("{}", output.draw("points_to_grid", &scene, [-70.0, 40.0], Picture::new())?.display());
+    println!("{}", output.draw("points_to_grid", &scene, [0.0, 45.0], Picture::new())?.display());
     Ok(())
 }

@@ -45,6 +45,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         cells.positions.iter_mut().for_each(|position| *position += shift);
         scene.surfaces.push(cells);
     }
-    println!("{}", output.draw("voxelize_mesh", &scene, [-90.0, 25.0], Picture::new())?.display());
+    println!("{}", output.draw("voxelize_mesh", &scene, [-12.0, 25.0], Picture::new())?.display());
     Ok(())
 }

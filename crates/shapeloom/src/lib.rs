@@ -54,7 +54,7 @@
 //! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
 //! | [`isosurface`] | surfaces where samples on a lattice reach a value |
-//! | [`voxels`] | grids of samples placed in space |
+//! | [`voxels`] | grids of samples placed in space, and what makes them of meshes, points and fields |
 //! | [`shape`] | the dynamic shape of parts |
 //! | [`io`] | file formats |
 //! | [`render`] | pictures on the CPU |

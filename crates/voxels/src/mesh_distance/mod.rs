@@ -2,13 +2,13 @@
 
 mod band;
 mod bins;
-mod boundary;
 mod convert;
 mod fast_sweeping;
 mod in_cells;
 mod near_triangle;
 mod open_signs;
 mod rows;
+mod steepness;
 mod thin;
 
 #[cfg(test)]

@@ -175,7 +175,7 @@ impl Rough {
         let [cu, cv] = self.apex;
         let (eu, ev) = (cu - self.length, cv);
         let mut squared = [0f32; LANES];
-        for lane in 0..LANES {
+        for (lane, squared) in squared.iter_mut().enumerate() {
             let x = x + lane as f32;
             let u = u0 + self.steps[0][0] * x;
             let v = v0 + self.steps[1][0] * x;
@@ -191,7 +191,7 @@ impl Rough {
             let third = du * du + dv * dv;
             let least = smaller(smaller(first, second), third);
             let inside = (v > 0.0) & (eu * v - ev * pu > 0.0) & (cv * u - cu * v > 0.0);
-            squared[lane] = w * w + if inside { 0.0 } else { least };
+            *squared = w * w + if inside { 0.0 } else { least };
         }
         let mut bits = 0u32;
         for lane in 0..LANES {

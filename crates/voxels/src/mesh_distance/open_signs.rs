@@ -5,7 +5,7 @@ use shapeloom_core::{ConvertError, Exec, parallel};
 use shapeloom_isosurface::Lattice;
 use shapeloom_spatial::WindingTree;
 
-use super::boundary::Boundary;
+use super::steepness::Steepness;
 
 /// The side of the largest cubes of samples that are looked at as one.
 const BRICK: usize = 8;
@@ -19,7 +19,7 @@ const TOLERANCES: [f64; 3] = [0.2, 0.02, 0.002];
 /// Tells inside from outside by winding numbers above 1/2.
 pub(super) struct OpenSigns<'a> {
     pub tree: &'a WindingTree,
-    pub boundary: &'a Boundary,
+    pub steepness: &'a Steepness,
     pub lattice: &'a Lattice,
 }
 
@@ -70,7 +70,7 @@ impl OpenSigns<'_> {
             let found = self.tree.winding_number_within(self.place(middle, first_slab), 0.1);
             let clear = (found.value - 0.5).abs() - found.bound;
             let center = DVec3::from_array(middle.map(|x| x as f64)) + DVec3::Z * first_slab as f64;
-            if clear > 0.0 && self.boundary.is_flatter(center, radius, clear / radius) {
+            if clear > 0.0 && self.steepness.is_at_most(center, radius, clear / radius) {
                 if found.value > 0.5 {
                     self.visit(cube, |at| values[at] = -values[at]);
                 }
