@@ -38,7 +38,7 @@ fn every_task_prints_lines_of_json() {
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
             Task::Closest | Task::Onering | Task::Heightfield => 2,
             Task::Read | Task::Write | Task::Rays => 5,
-            Task::Octree => 6,
+            Task::Octree => 7,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");
         for line in lines.lines() {
