@@ -394,6 +394,12 @@ mod tests {
         }
         // The middle of the ball is bricks of one value.
         assert!(band.bricks()[1] > 0 && band.memory_bytes() < grid.memory_bytes());
+        // A jump within a brick, with nothing in the band: both sides stay.
+        let jump = |at: u64| if lattice.coordinates(at)[0] < 13 { -9.0 } else { 9.0 };
+        let samples = Samples::F32((0..lattice.samples()).map(jump).collect());
+        let jump = VoxelGrid::try_new(lattice, samples, Quantity::SignedDistance).unwrap();
+        let band = SparseBricks::narrow_band(&jump, 2.5, &Exec::default()).unwrap();
+        assert_eq!([12, 13].map(|i| band.sample([i, 4, 4])), [-2.5, 2.5]);
         assert!(SparseBricks::narrow_band(&grid, f32::NAN, &Exec::default()).is_err());
         let small = Exec::default().with_memory(1 << 10);
         assert!(SparseBricks::narrow_band(&grid, 2.5, &small).is_err());
