@@ -40,7 +40,7 @@ fn every_task_prints_lines_of_json() {
             Task::Isosurface => 4,
             Task::Closest | Task::Onering | Task::Heightfield | Task::MeshToSdf => 2,
             Task::Read | Task::Write | Task::Rays => 5,
-            Task::Octree => 6,
+            Task::Octree => 7,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");
         for line in lines.lines() {

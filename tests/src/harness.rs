@@ -155,8 +155,8 @@ fn corners_of(result: &Geometry) -> (&[DVec3], Vec<(u32, usize)>) {
     }
 }
 
-/// Checks that every tag in a column of the result lies where the tagged element of the source lies, up to how far a vertex
-/// may have moved.
+/// Checks that every tag in a column of the result lies where the tagged element of the source lies, up to how far a
+/// vertex may have moved.
 fn check_tags(source: &Geometry, result: (&Geometry, f64), before: Domain, after: Domain, column: &Column) -> bool {
     let (result, moved) = result;
     let (positions, corners) = corners_of(result);

@@ -4,14 +4,14 @@ use shapeloom::core::glam::{DVec2, DVec3};
 use shapeloom::core::{ClosestPoint, Exec, Hit, Interval, Ray, Rays};
 use shapeloom::mesh::primitives::{Platonic, Solid, Torus};
 use shapeloom::mesh::{TriMesh, TriangulatePolygons};
-use shapeloom::spatial::TriangleBvh;
+use shapeloom::spatial::{TriangleBvh, TriangleOctree};
 
 use crate::oracles::to_triangle;
 use crate::shapes;
 use crate::support::{Dice, files_below, root};
 
 /// Everything under crates/ that implements [`Rays`] or [`ClosestPoint`], and is tried below.
-const IMPLEMENTORS: &[&str] = &["TriangleBvh"];
+const IMPLEMENTORS: &[&str] = &["TriangleBvh", "TriangleOctree"];
 
 /// A shape to query, and its triangles as the truth.
 struct Case {
@@ -46,6 +46,11 @@ impl Case {
     fn hierarchy(&self) -> TriangleBvh {
         let indices: Vec<[u32; 3]> = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         TriangleBvh::build(self.triangles.as_flattened(), &indices, &Exec::default()).expect("finite corners")
+    }
+
+    fn octree(&self) -> TriangleOctree {
+        let indices: Vec<[u32; 3]> = (0..self.triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        TriangleOctree::build(self.triangles.as_flattened(), &indices, &Exec::default()).expect("finite corners")
     }
 }
 
@@ -111,7 +116,8 @@ fn ray_laws(case: &Case, shape: &dyn Rays, rays: &[Ray]) -> usize {
 }
 
 /// No sampled point is closer than the answer, the answer lies on its element and that far away, `closest_within`
-/// honours the bound, between equal distances the smallest element counts, batches agree with single queries to the bit.
+/// honours the bound, between equal distances the smallest element counts, batches agree with single queries to the
+/// bit.
 fn closest_laws(case: &Case, shape: &dyn ClosestPoint, queries: &[DVec3]) {
     let name = case.name;
     let mut batch = vec![None; queries.len()];
@@ -166,7 +172,8 @@ fn everything_that_answers_rays_and_closest_points_keeps_the_laws() {
             .collect();
         let queries: Vec<DVec3> = (0..250).map(|k| point(if k % 2 == 0 { 1.0 } else { 4.0 })).collect();
         let bvh = case.hierarchy();
-        let all_rays: [&dyn Rays; 1] = [&bvh];
+        let octree = case.octree();
+        let all_rays: [&dyn Rays; 2] = [&bvh, &octree];
         let all_closest: [&dyn ClosestPoint; 1] = [&bvh];
         for shape in all_rays {
             assert!(ray_laws(&case, shape, &rays) > 80, "{}: few hits", case.name);

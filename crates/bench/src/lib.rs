@@ -100,6 +100,8 @@ pub enum Task {
     /// Signed distances of blob_1m.ply (else of a torus) on 256³ samples.
     MeshToSdf,
     /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an octree and back.
+    /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an
+    /// octree and back.
     Octree,
 }
 

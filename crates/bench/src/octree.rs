@@ -13,7 +13,7 @@ use crate::{Outcome, Setting, measure};
 /// Boxes that are asked for.
 const BOXES: u32 = 10_000;
 
-/// The build of both, rays on both, boxes on the octree, and the grid.
+/// The build of both, rays and boxes on both, and the grid.
 pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
     let scene = scene(setting)?;
     let exec = Exec::default();
@@ -53,14 +53,21 @@ pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
         })
         .collect();
     let mut found = Vec::new();
-    let (met, times) = measure::fastest(setting.runs, || {
-        Ok(boxes.iter().fold(0, |met, region| {
-            tree.overlapping(region, &mut found);
-            met + found.len()
-        }))
-    })?;
-    let figures = with(&[("boxes", json!(boxes.len())), ("met", json!(met))]);
-    outcomes.push(Outcome { input: scene.input("octree boxes"), times, figures });
+    type Query<'a> = &'a dyn Fn(&Aabb, &mut Vec<u32>);
+    let ways: [(&str, Query<'_>); 2] = [
+        ("octree boxes", &|region, found| tree.overlapping(region, found)),
+        ("hierarchy boxes", &|region, found| bvh.overlapping(region, found)),
+    ];
+    for (name, overlapping) in ways {
+        let (met, times) = measure::fastest(setting.runs, || {
+            Ok(boxes.iter().fold(0, |met, region| {
+                overlapping(region, &mut found);
+                met + found.len()
+            }))
+        })?;
+        let figures = with(&[("boxes", json!(boxes.len())), ("met", json!(met))]);
+        outcomes.push(Outcome { input: scene.input(name), times, figures });
+    }
     outcomes.push(grid(setting)?);
     Ok(outcomes)
 }

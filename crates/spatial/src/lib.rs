@@ -20,6 +20,7 @@
 
 mod batch_order;
 mod box_pairs;
+mod box_queries;
 mod closed;
 mod closest_point;
 mod equal_triangles;

@@ -6,10 +6,12 @@ use glam::{DVec2, DVec3};
 use shapeloom_core::Aabb;
 use shapeloom_core::predicates::{orient2d, orient3d};
 
-/// Whether a closed triangle and a closed box have a point in common, decided exactly; touching counts. Triangles may be segments or points.
+/// Whether a closed triangle and a closed box have a point in common, decided exactly; touching counts. Triangles may
+/// be segments or points.
 ///
-/// Separating axes (Akenine-Möller 2001): if the two are apart, they are so along a side of the box, along the triangle's normal, or along the normal
-/// of one of its sides seen along an axis. Each is a comparison, or a sign of the exact predicates on the coordinates as given.
+/// Separating axes (Akenine-Möller 2001): if the two are apart, they are so along a side of the box, along the
+/// triangle's normal, or along the normal of one of its sides seen along an axis. Each is a comparison, or a sign of
+/// the exact predicates on the coordinates as given.
 pub(crate) fn triangle_meets_box(corners: &[DVec3; 3], region: &Aabb) -> bool {
     let [a, b, c] = *corners;
     if region.is_empty() || a.min(b).min(c).cmpgt(region.max).any() || a.max(b).max(c).cmplt(region.min).any() {
@@ -43,7 +45,8 @@ mod tests {
     use super::*;
     use crate::fixtures::Draws;
 
-    /// What is left of a triangle within a box, by clipping at its six planes in exact integers scaled by their denominators: none if apart.
+    /// What is left of a triangle within a box, by clipping at its six planes in exact integers scaled by their
+    /// denominators: none if apart.
     fn clipped(corners: &[DVec3; 3], region: &Aabb) -> bool {
         // Rational coordinates with a common denominator; few bits each, so that i128 holds all.
         let mut polygon: Vec<([i128; 3], i128)> =

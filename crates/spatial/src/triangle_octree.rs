@@ -14,7 +14,8 @@ use crate::triangle_ray::Shear;
 const LEAF: usize = 8;
 /// The deepest octants. Deeper ones are 2^-16 of the shape.
 const DEPTH: u32 = 16;
-/// References for each triangle at most, on average: a heap of triangles that all meet in each octant would never be cut small.
+/// References for each triangle at most, on average: a heap of triangles that all meet in each octant would never be
+/// cut small.
 const REFERENCES: usize = 8;
 /// What stands for the number of triangles of an octant that is cut.
 const CUT: u32 = u32::MAX;
@@ -30,13 +31,14 @@ struct Node {
 
 /// An octree over triangles, for rays and boxes.
 ///
-/// Every leaf names all triangles that meet its octant, decided exactly; an octant of more than 8 is cut, down to 2^-16 of the shape, as
-/// long as there are fewer than 8 references for each triangle. Answers are those of [`TriangleBvh`](crate::TriangleBvh), to the bit: rays
-/// are decided by the same watertight test on the same scaled coordinates, and boxes exactly.
+/// Every leaf names all triangles that meet its octant, decided exactly; an octant of more than 8 is cut, down to 2^-16
+/// of the shape, as long as there are fewer than 8 references for each triangle. Answers are those of
+/// [`TriangleBvh`](crate::TriangleBvh), to the bit: rays are decided by the same watertight test on the same scaled
+/// coordinates, and boxes exactly.
 ///
-/// For what it is good beside the hierarchy: octants do not depend on the triangles, so two trees over one cube walk side by side, and
-/// coarse levels say where anything is. For rays the hierarchy is faster and smaller. Memory: 104 to 136 bytes a triangle, reserved as long
-/// as the tree lives.
+/// For what it is good beside the hierarchy: octants do not depend on the triangles, so two trees over one cube walk
+/// side by side, and coarse levels say where anything is. For rays the hierarchy is faster and smaller. Memory: 104 to
+/// 136 bytes a triangle, reserved as long as the tree lives.
 pub struct TriangleOctree {
     nodes: Vec<Node>,
     references: Vec<u32>,
@@ -173,7 +175,8 @@ impl TriangleOctree {
             + size_of_val(self.corners.as_slice())
     }
 
-    /// Every triangle that has a point in common with a box, rising; decided exactly, touching counts. What `found` held before is gone.
+    /// Every triangle that has a point in common with a box, rising; decided exactly, touching counts. What `found`
+    /// held before is gone.
     pub fn overlapping(&self, region: &Aabb, found: &mut Vec<u32>) {
         found.clear();
         if self.nodes.is_empty() || region.is_empty() || region.min.is_nan() || region.max.is_nan() {
@@ -202,8 +205,9 @@ impl TriangleOctree {
         found.retain(|&triangle| triangle_meets_box(&self.corners[triangle as usize], &scaled));
     }
 
-    /// Calls `visit` for the triangles of leaves that the ray may meet, near ones first, with their element and hit, until it says that
-    /// it needs none beyond a distance in model units. Triangles in several leaves come more than once.
+    /// Calls `visit` for the triangles of leaves that the ray may meet, near ones first, with their element and hit,
+    /// until it says that it needs none beyond a distance in model units. Triangles in several leaves come more than
+    /// once.
     fn walk(&self, ray: &Ray, mut visit: impl FnMut(Hit) -> f64) {
         if self.nodes.is_empty() || ray.reach.is_empty() {
             return;
@@ -350,6 +354,8 @@ mod tests {
             let meets = |(_, triangle): &(u32, &[u32; 3])| triangle_meets_box(&corners(triangle), &region);
             let wanted: Vec<u32> = (0..).zip(triangles).filter(meets).map(|(element, _)| element).collect();
             assert_eq!(found, wanted, "{region:?}");
+            bvh.overlapping(&region, &mut found);
+            assert_eq!(found, wanted, "{region:?}");
             met[1] += found.len();
         }
         met
@@ -389,7 +395,10 @@ mod tests {
         for (positions, triangles) in [(vec![], vec![]), (vec![DVec3::ONE], vec![[0, 0, 0]])] {
             let tree = TriangleOctree::build(&positions, &triangles, &exec).unwrap();
             assert!(tree.first_hit(&ray).is_none());
-            tree.overlapping(&Aabb { min: DVec3::ZERO, max: DVec3::splat(2.0) }, &mut found);
+            let region = Aabb { min: DVec3::ZERO, max: DVec3::splat(2.0) };
+            tree.overlapping(&region, &mut found);
+            assert_eq!(found.len(), triangles.len());
+            TriangleBvh::build(&positions, &triangles, &exec).unwrap().overlapping(&region, &mut found);
             assert_eq!(found.len(), triangles.len());
         }
         let bad = TriangleOctree::build(&[DVec3::splat(f64::NAN)], &[[0, 0, 0]], &exec);

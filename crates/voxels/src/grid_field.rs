@@ -11,20 +11,22 @@ choice! {
     pub enum Interpolation {
         /// Linear along each direction: continuous, with a gradient that jumps at the sides of cells.
         Trilinear = "trilinear",
-        /// Cubic along each direction (Catmull and Rom 1974): goes through the samples, with a continuous gradient; overshoots.
+        /// Cubic along each direction (Catmull and Rom 1974): goes through the samples, with a continuous gradient;
+        /// overshoots.
         Tricubic = "tricubic",
     }
 }
 
 /// A grid as a field: negative inside, by the samples less the iso value, and interpolated in between.
 ///
-/// Outside of the lattice the value is that of the nearest point of its border in lattice coordinates. The cubic interpolant repeats
-/// the border's samples beyond it. The gradient is the interpolant's own; where the trilinear one jumps, that of the cell with the larger coordinates;
-/// outside the lattice it has no part across the border.
+/// Outside of the lattice the value is that of the nearest point of its border in lattice coordinates. The cubic
+/// interpolant repeats the border's samples beyond it. The gradient is the interpolant's own; where the trilinear one
+/// jumps, that of the cell with the larger coordinates; outside the lattice it has no part across the border.
 ///
-/// [`range`](Field::range) is an outer bound, from the smallest and the largest sample of all cells that may meet the box, through a pyramid of
-/// such pairs: 64 of them at most are read. A linear interpolant never leaves its samples' range; a cubic one exceeds
-/// it by at most (5/4)³ of its half, as the weights along a direction sum to 1 and their sizes to 5/4.
+/// [`range`](Field::range) is an outer bound, from the smallest and the largest sample of all cells that may meet the
+/// box, through a pyramid of such pairs: 64 of them at most are read. A linear interpolant never leaves its samples'
+/// range; a cubic one exceeds it by at most (5/4)³ of its half, as the weights along a direction sum to 1 and their
+/// sizes to 5/4.
 ///
 /// Memory: 4 bytes a sample, and 8/7 of two more numbers for each 8 samples.
 #[derive(Clone, Debug)]
@@ -48,8 +50,8 @@ impl GridField {
     /// The field of samples, with `level` telling where its surface is.
     ///
     /// # Errors
-    /// A sample that is NaN or infinite, a placement that cannot be inverted, a slab that cannot be had, too little memory, or the reason to
-    /// stop.
+    /// A sample that is NaN or infinite, a placement that cannot be inverted, a slab that cannot be had, too little
+    /// memory, or the reason to stop.
     pub fn try_new<S: Slabs + ?Sized>(
         slabs: &S,
         level: Level,
@@ -150,7 +152,8 @@ impl GridField {
         self.interpolation
     }
 
-    /// The cell around a point and the place in it from 0 to 1, moved to the border from outside; by axis whether it was moved.
+    /// The cell around a point and the place in it from 0 to 1, moved to the border from outside; by axis whether it
+    /// was moved.
     fn locate(&self, point: DVec3) -> ([u32; 3], DVec3, [bool; 3]) {
         let at = self.to_lattice.point(point);
         let mut cell = [0u32; 3];

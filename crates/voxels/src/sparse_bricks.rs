@@ -30,12 +30,13 @@ enum Slot {
 
 /// Samples in bricks of 8 × 8 × 8, of which only those are kept that differ from a background.
 ///
-/// A brick is named by the Morton code of its place (Morton 1966), and the codes lie in a sorted table. It has samples of its own, with a
-/// bit for each that says whether it is active, or one value for all. What lies in no brick has the background's value. For a
-/// grid as it is, active means different from the background; for a narrow band, within the band.
+/// A brick is named by the Morton code of its place (Morton 1966), and the codes lie in a sorted table. It has samples
+/// of its own, with a bit for each that says whether it is active, or one value for all. What lies in no brick has the
+/// background's value. For a grid as it is, active means different from the background; for a narrow band, within the
+/// band.
 ///
-/// Lookup: a binary search in the table, and none where the brick is known. Memory: 2124 bytes a brick with samples, 16 a brick of one
-/// value. Lattices have at most 2^24 samples in a direction.
+/// Lookup: a binary search in the table, and none where the brick is known. Memory: 2124 bytes a brick with samples, 16
+/// a brick of one value. Lattices have at most 2^24 samples in a direction.
 #[derive(Clone, Debug)]
 pub struct SparseBricks {
     lattice: Lattice,
@@ -96,11 +97,12 @@ impl SparseBricks {
         Self::gather(grid, background, exec, |sample| (sample, sample.to_bits() != background.to_bits()))
     }
 
-    /// The band of a grid of signed distances within `half_width` of the surface: samples nearer are active and kept, all
-    /// others are cut to the half width with their sign, and the background is the half width.
+    /// The band of a grid of signed distances within `half_width` of the surface: samples nearer are active and kept,
+    /// all others are cut to the half width with their sign, and the background is the half width.
     ///
     /// # Errors
-    /// A half width that is not positive and finite, more than 2^24 samples in a direction, too little memory, or the reason to stop.
+    /// A half width that is not positive and finite, more than 2^24 samples in a direction, too little memory, or the
+    /// reason to stop.
     pub fn narrow_band(grid: &VoxelGrid, half_width: f32, exec: &Exec) -> Result<Self, ConvertError> {
         if !(half_width > 0.0 && half_width.is_finite()) {
             return Err(VoxelError::Overflow { what: "a half width", found: f64::from(half_width) }.into());
@@ -392,6 +394,12 @@ mod tests {
         }
         // The middle of the ball is bricks of one value.
         assert!(band.bricks()[1] > 0 && band.memory_bytes() < grid.memory_bytes());
+        // A jump within a brick, with nothing in the band: both sides stay.
+        let jump = |at: u64| if lattice.coordinates(at)[0] < 13 { -9.0 } else { 9.0 };
+        let samples = Samples::F32((0..lattice.samples()).map(jump).collect());
+        let jump = VoxelGrid::try_new(lattice, samples, Quantity::SignedDistance).unwrap();
+        let band = SparseBricks::narrow_band(&jump, 2.5, &Exec::default()).unwrap();
+        assert_eq!([12, 13].map(|i| band.sample([i, 4, 4])), [-2.5, 2.5]);
         assert!(SparseBricks::narrow_band(&grid, f32::NAN, &Exec::default()).is_err());
         let small = Exec::default().with_memory(1 << 10);
         assert!(SparseBricks::narrow_band(&grid, 2.5, &small).is_err());

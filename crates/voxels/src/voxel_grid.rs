@@ -10,8 +10,8 @@ use crate::Samples;
 pub enum Quantity {
     /// Whether the cell around a sample is full: 0 or 1. The surface is where it is a half, the inside above.
     Occupancy,
-    /// Something that is larger inside, on a scale of its own: X-ray density, for instance. Only the samples tell where the surface
-    /// is.
+    /// Something that is larger inside, on a scale of its own: X-ray density, for instance. Only the samples tell where
+    /// the surface is.
     Density,
     /// The distance to a surface, negative inside, or a field of the same sign.
     SignedDistance,

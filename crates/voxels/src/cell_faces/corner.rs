@@ -153,8 +153,8 @@ mod tests {
         assert!(!by_gap.same_at(4));
     }
 
-    /// Pairing the other way parts a fan that has all four faces, and never joins any others: what the order of decisions
-    /// rests on.
+    /// Pairing the other way parts a fan that has all four faces, and never joins any others: what the order of
+    /// decisions rests on.
     #[test]
     fn pairing_the_other_way_only_parts_fans() {
         for mask in 0..=255u8 {

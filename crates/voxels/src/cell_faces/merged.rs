@@ -7,8 +7,8 @@ use shapeloom_mesh::PolyMesh;
 use super::{Built, DIRECTIONS, SQUARE, beside, position, touching_edges};
 use crate::full_cells::FullCells;
 
-/// Greedy rectangles in each layer of each direction: from the first face that is left, as far along the row as faces go, then as
-/// many rows as have all of them.
+/// Greedy rectangles in each layer of each direction: from the first face that is left, as far along the row as faces
+/// go, then as many rows as have all of them.
 pub(super) fn build(cells: &FullCells, lattice: &Lattice, exec: &Exec) -> Result<Built, ConvertError> {
     let dimensions = lattice.dimensions();
     let places = dimensions.map(|count| count + 1);

@@ -19,19 +19,20 @@ use separate::Pairings;
 options! {
     /// The faces between full and empty cells, as quadrilaterals that face outward.
     ///
-    /// The cell of a sample is the parallelepiped around it that reaches half a step to each side; it is full where the sample is
-    /// inside. The solid is the union of the full cells, the lattice is surrounded by empty ones, and the result is exactly
-    /// the border of the solid.
+    /// The cell of a sample is the parallelepiped around it that reaches half a step to each side; it is full where the
+    /// sample is inside. The solid is the union of the full cells, the lattice is surrounded by empty ones, and the
+    /// result is exactly the border of the solid.
     ///
-    /// Where full cells touch along an edge or in a corner alone, that border is no manifold: four faces meet in such an edge. With
-    /// `separate` vertices are doubled there, so that the result is a closed, oriented 2-manifold whatever the cells: two
-    /// faces share each edge, and the faces at a vertex form one fan. The sheets still touch in space. At an edge, the faces of the
-    /// same cell stay together; where both ends of the edge join the cells anyway, those of the same gap do. Without
-    /// `separate` there is one vertex a place, and the report counts the edges of four faces.
+    /// Where full cells touch along an edge or in a corner alone, that border is no manifold: four faces meet in such
+    /// an edge. With `separate` vertices are doubled there, so that the result is a closed, oriented 2-manifold
+    /// whatever the cells: two faces share each edge, and the faces at a vertex form one fan. The sheets still touch in
+    /// space. At an edge, the faces of the same cell stay together; where both ends of the edge join the cells anyway,
+    /// those of the same gap do. Without `separate` there is one vertex a place, and the report counts the edges of
+    /// four faces.
     ///
     /// With `merge` coplanar faces become rectangles, as large as a greedy search makes them: first along one
-    /// direction, then across. Rectangles meet in T-junctions, so edges do not match and the mesh is not closed as a graph, though it
-    /// covers the same points. `separate` has no effect then.
+    /// direction, then across. Rectangles meet in T-junctions, so edges do not match and the mesh is not closed as a
+    /// graph, though it covers the same points. `separate` has no effect then.
     ///
     /// Cost: linear in cells and faces.
     pub struct CellFaces("cell-faces") {
@@ -58,11 +59,12 @@ impl<S: Slabs + ?Sized> FromTolerance<S> for CellFaces {
 /// The directions in which a face may look: axis and side.
 const DIRECTIONS: [(usize, i64); 6] = [(0, -1), (0, 1), (1, -1), (1, 1), (2, -1), (2, 1)];
 
-/// The corners of a face as offsets in the two directions after its axis, counter-clockwise seen from the side of the axis.
+/// The corners of a face as offsets in the two directions after its axis, counter-clockwise seen from the side of the
+/// axis.
 const SQUARE: [(u32, u32); 4] = [(0, 0), (1, 0), (1, 1), (0, 1)];
 
-/// Corner places of a lattice: between cells, one more than cells in each direction. Place `(i, j, k)` is the smallest corner of
-/// cell `(i, j, k)`.
+/// Corner places of a lattice: between cells, one more than cells in each direction. Place `(i, j, k)` is the smallest
+/// corner of cell `(i, j, k)`.
 fn position(placement: &Affine, place: [u32; 3]) -> DVec3 {
     placement.point(DVec3::from(place.map(f64::from)) - DVec3::splat(0.5))
 }

@@ -8,8 +8,8 @@ use crate::full_cells::FullCells;
 
 /// How the faces at edges of four are paired.
 ///
-/// Faces of one cell stay together, unless the fans at both ends of the edge hold all four faces: then two pairs
-/// would share an edge between the same two vertices, and faces of one gap stay together instead. The change parts the fan at
+/// Faces of one cell stay together, unless the fans at both ends of the edge hold all four faces: then two pairs would
+/// share an edge between the same two vertices, and faces of one gap stay together instead. The change parts the fan at
 /// each end into two and joins none, so an edge once decided stays right, and one pass over the edges does.
 pub(super) struct Pairings {
     separate: bool,

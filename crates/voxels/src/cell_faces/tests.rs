@@ -66,7 +66,8 @@ fn a_block_merges_to_six_rectangles() {
     assert!(unmatched(&converted.value) == 0);
 }
 
-/// Two cells that touch along an edge whose ends other cells join: by cell alone its two copies would have the same vertices.
+/// Two cells that touch along an edge whose ends other cells join: by cell alone its two copies would have the same
+/// vertices.
 #[test]
 fn an_edge_joined_at_both_ends_is_still_two() {
     let ring = grid([2, 2, 3], |[i, j, k]| k != 1 || i == j);

@@ -15,14 +15,16 @@ pub enum Blend {
     Intersection,
     /// Inside the first and not the second: the larger of the first and the second negated.
     Difference,
-    /// Inside either, with a fillet: the quadratic polynomial minimum, which is smaller than the plain one by at most a quarter of the radius,
-    /// where the values differ by less than the radius. The surface is smooth where the two meet.
+    /// Inside either, with a fillet: the quadratic polynomial minimum, which is smaller than the plain one by at most a
+    /// quarter of the radius, where the values differ by less than the radius. The surface is smooth where the two
+    /// meet.
     SmoothUnion {
         /// The values' difference up to which they blend, in model units; above 0.
         radius: f32,
     },
-    /// Between the two, linear in the values: the first at 0, the second at 1. Where both are distances the surface moves from one
-    /// to the other; topology may change on the way, and parts that do not overlap fade instead of moving.
+    /// Between the two, linear in the values: the first at 0, the second at 1. Where both are distances the surface
+    /// moves from one to the other; topology may change on the way, and parts that do not overlap fade instead of
+    /// moving.
     Morph {
         /// How far, from 0 to 1.
         fraction: f32,
@@ -57,11 +59,13 @@ impl Blend {
     }
 }
 
-/// Two grids on one lattice, sample by sample. Samples of another quantity than signed distances count from their iso value, negative
-/// inside. The signs are those of the sets exactly (but for smooth union and morphing, which have sets of their own).
+/// Two grids on one lattice, sample by sample. Samples of another quantity than signed distances count from their iso
+/// value, negative inside. The signs are those of the sets exactly (but for smooth union and morphing, which have sets
+/// of their own).
 ///
 /// # Errors
-/// Grids on different lattices, a radius that is not positive, a fraction outside of 0 to 1, too little memory, or the reason to stop.
+/// Grids on different lattices, a radius that is not positive, a fraction outside of 0 to 1, too little memory, or the
+/// reason to stop.
 pub fn blend(a: &VoxelGrid, b: &VoxelGrid, how: Blend, exec: &Exec) -> Result<VoxelGrid, ConvertError> {
     exec.check()?;
     how.check()?;
@@ -80,11 +84,12 @@ pub fn blend(a: &VoxelGrid, b: &VoxelGrid, how: Blend, exec: &Exec) -> Result<Vo
     distance_grid(lattice, values)
 }
 
-/// Two narrow bands on one lattice, sample by sample; a sample is active where it is less than the background, the half width, which is
-/// the smaller one's of the two. [`redistance_band`](super::redistance_band) makes distances of the values again.
+/// Two narrow bands on one lattice, sample by sample; a sample is active where it is less than the background, the half
+/// width, which is the smaller one's of the two. [`redistance_band`](super::redistance_band) makes distances of the
+/// values again.
 ///
 /// # Errors
-/// As [`blend`].
+/// As [`blend`], and bricks whose background is not positive: they are no bands.
 pub fn blend_bands(a: &SparseBricks, b: &SparseBricks, how: Blend, exec: &Exec) -> Result<SparseBricks, ConvertError> {
     exec.check()?;
     how.check()?;
@@ -94,6 +99,9 @@ pub fn blend_bands(a: &SparseBricks, b: &SparseBricks, how: Blend, exec: &Exec) 
         return Err(VoxelError::Lattices { first, second }.into());
     }
     let half_width = a.background().min(b.background());
+    if half_width.is_nan() || half_width <= 0.0 {
+        return Err(VoxelError::Overflow { what: "a half width", found: f64::from(half_width) }.into());
+    }
     let mut result = SparseBricks::try_new(lattice, half_width, Quantity::SignedDistance)?;
     // Of what is in no brick of either all samples are outside of both, unless the second is turned over.
     let mut keys: Vec<u64> = a.keys().iter().chain(b.keys()).copied().collect();

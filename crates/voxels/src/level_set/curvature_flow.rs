@@ -15,16 +15,18 @@ use crate::{SparseBricks, VoxelError, VoxelGrid, morton};
 const MOST_STEPS: u32 = 1_000_000;
 
 options! {
-    /// Smooths a surface by moving it along its normal by its mean curvature, the sum of both principal ones (Osher and Sethian 1988).
+    /// Smooths a surface by moving it along its normal by its mean curvature, the sum of both principal ones (Osher and
+    /// Sethian 1988).
     ///
-    /// A sphere of radius r shrinks to √(r² − 4t) and vanishes at t = r²/4, so features of radius r are gone by that time. Volume
-    /// shrinks. The equation φ' = |∇φ| div(∇φ/|∇φ|) is solved by central differences and explicit steps on one lattice, also on a
-    /// skewed one; values beyond the border are those at the border. Steps are at most `step` times the bound of stability of
-    /// heat flow, 1/(2 Σ|Gij|) with the inverse metric G of the lattice: h²/6 for cubes of side h. Samples that are no finite signed distances are
-    /// made so first, as `redistance` does; the result's are none any more, though near ones.
+    /// A sphere of radius r shrinks to √(r² − 4t) and vanishes at t = r²/4, so features of radius r are gone by that
+    /// time. Volume shrinks. The equation φ' = |∇φ| div(∇φ/|∇φ|) is solved by central differences and explicit steps on
+    /// one lattice, also on a skewed one; values beyond the border are those at the border. Steps are at most `step`
+    /// times the bound of stability of heat flow, 1/(2 Σ|Gij|) with the inverse metric G of the lattice: h²/6 for cubes
+    /// of side h. Samples that are no finite signed distances are made so first, as `redistance` does; the result's are
+    /// none any more, though near ones.
     ///
-    /// First order in time, second in space where the surface is smooth. Cost: linear in samples and steps. More than a million steps
-    /// are refused.
+    /// First order in time, second in space where the surface is smooth. Cost: linear in samples and steps. More than a
+    /// million steps are refused.
     pub struct CurvatureFlow("curvature-flow") {
         required {
             /// How long, in squared model units.
@@ -78,12 +80,13 @@ impl Convert<VoxelGrid> for CurvatureFlow {
     }
 }
 
-/// [`CurvatureFlow`] on a narrow band: active samples move, and when the surface may have moved by a quarter of the half width, the
-/// band is laid anew by [`redistance_band`], and so it is at the end. The half width should be three cells or more. Laying the band
-/// moves the surface inward by about h²/8 times its curvature, as its pieces are flat.
+/// [`CurvatureFlow`] on a narrow band: active samples move, and when the surface may have moved by a quarter of the
+/// half width, the band is laid anew by [`redistance_band`], and so it is at the end. The half width should be three
+/// cells or more. Laying the band moves the surface inward by about h²/8 times its curvature, as its pieces are flat.
 ///
 /// # Errors
-/// A time that is negative or not finite, a step outside of 0 to 1, more than a million steps, too little memory, or the reason to stop.
+/// A time that is negative or not finite, a step outside of 0 to 1, more than a million steps, too little memory, or
+/// the reason to stop.
 pub fn curvature_flow_band(
     source: &SparseBricks,
     time: f64,

@@ -86,8 +86,9 @@ impl Table for Bricks {
     }
 }
 
-/// The march: every sample takes the nearest of the pieces that its neighbours have, in the order of distance (Sethian 1996, with the
-/// pieces in place of the quadratic equation). A sample that a later neighbour brings nearer is taken up again.
+/// The march: every sample takes the nearest of the pieces that its neighbours have, in the order of distance (Sethian
+/// 1996, with the pieces in place of the quadratic equation). A sample that a later neighbour brings nearer is taken up
+/// again.
 pub(super) struct March<'a, T> {
     pub table: T,
     dimensions: [u32; 3],
@@ -197,8 +198,8 @@ impl<'a, T: Table> March<'a, T> {
         (0..3).all(|axis| near[axis] < self.dimensions[axis]).then_some(near)
     }
 
-    /// Lets a sample look at all pieces in the cells around that of its own, until none is nearer. Few pieces are the nearest of some
-    /// sample beside the surface, so without that far samples would not hear of most.
+    /// Lets a sample look at all pieces in the cells around that of its own, until none is nearer. Few pieces are the
+    /// nearest of some sample beside the surface, so without that far samples would not hear of most.
     fn refine(&mut self, at: [u32; 3], slot: usize) {
         let position = place(self.placement, at);
         loop {

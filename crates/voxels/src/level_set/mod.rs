@@ -20,7 +20,8 @@ use shapeloom_isosurface::{Inside, InsideChoice, IsoValue, Lattice, Level, Slabs
 
 use crate::{Quantity, Samples, VoxelError, VoxelGrid};
 
-/// The samples as distances in single precision: those of a grid of finite distances as they are, any others after redistancing.
+/// The samples as distances in single precision: those of a grid of finite distances as they are, any others after
+/// redistancing.
 fn as_distances(source: &VoxelGrid, exec: &Exec) -> Result<Vec<f32>, ConvertError> {
     let mut values = signed_values(source, exec)?;
     if source.quantity() != Quantity::SignedDistance || values.iter().any(|value| !value.is_finite()) {

@@ -10,11 +10,11 @@ use crate::{Quantity, VoxelError, VoxelGrid};
 options! {
     /// The solid grown or shrunk by a distance, as a grid of signed distances.
     ///
-    /// A positive distance grows, a negative one shrinks: the distance is taken from every sample. The result is as good as
-    /// the samples are distances: of another kind of grid, or where samples are not finite, they are made so first, as `redistance`
-    /// does. Growing rounds convex edges off, shrinking rounds concave ones; away from the old surface on the side where it is
-    /// concave the result's values are no distances any more, but bounds of them. Parts that shrink to nothing are gone, and the
-    /// deviation is an estimate. Cost: linear.
+    /// A positive distance grows, a negative one shrinks: the distance is taken from every sample. The result is as
+    /// good as the samples are distances: of another kind of grid, or where samples are not finite, they are made so
+    /// first, as `redistance` does. Growing rounds convex edges off, shrinking rounds concave ones; away from the old
+    /// surface on the side where it is concave the result's values are no distances any more, but bounds of them. Parts
+    /// that shrink to nothing are gone, and the deviation is an estimate. Cost: linear.
     pub struct OffsetLevelSet("offset-level-set") {
         required {
             /// How far the surface moves outward, in model units; inward if negative.

@@ -3,7 +3,8 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_isosurface::Level;
 
-/// Six tetrahedra around the diagonal of a cell, by the corners' bits (Kuhn 1960). Neighbouring cells cut their common face alike.
+/// Six tetrahedra around the diagonal of a cell, by the corners' bits (Kuhn 1960). Neighbouring cells cut their common
+/// face alike.
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 4, 6, 7]];
 

@@ -14,15 +14,16 @@ use crate::{Quantity, SparseBricks, VoxelGrid, morton};
 options! {
     /// Signed distances to the surface of a grid of anything: negative inside.
     ///
-    /// The surface between samples is cut into triangles by marching tetrahedra; the samples around it get their exact distance to
-    /// those. From there on a front goes outward in the order of distance, as in fast marching (Sethian 1996), but each sample takes
-    /// the nearest of the triangles that its neighbours have and of those in the cells around, instead of solving a quadratic
-    /// equation: its value is the exact distance to some triangle, so never less than to the nearest, and mostly that. Lattices may be
-    /// skewed.
+    /// The surface between samples is cut into triangles by marching tetrahedra; the samples around it get their exact
+    /// distance to those. From there on a front goes outward in the order of distance, as in fast marching (Sethian
+    /// 1996), but each sample takes the nearest of the triangles that its neighbours have and of those in the cells
+    /// around, instead of solving a quadratic equation: its value is the exact distance to some triangle, so never less
+    /// than to the nearest, and mostly that. Lattices may be skewed.
     ///
-    /// Every sample keeps its side, so no cell gains or loses surface. At the border of the lattice the surface ends: distances are
-    /// to what lies inside. Samples that are NaN or infinite are outside, and get finite distances too. On one
-    /// thread. Cost: O(n log n) in samples; with a band in those of the band. Memory: 64 bytes a sample, 92 a triangle.
+    /// Every sample keeps its side, so no cell gains or loses surface. At the border of the lattice the surface ends:
+    /// distances are to what lies inside. Samples that are NaN or infinite are outside, and get finite distances too.
+    /// On one thread. Cost: O(n log n) in samples; with a band in those of the band. Memory: 64 bytes a sample, 92 a
+    /// triangle.
     pub struct Redistance("redistance") {
         required {}
         optional {
@@ -118,12 +119,13 @@ pub(super) fn distances(source: &VoxelGrid, level: Level, band: f64, exec: &Exec
     Ok(Distances { values, surface_cells, not_finite: cells.not_finite })
 }
 
-/// Signed distances in a narrow band, as [`Redistance`] has them, from the signs and crossings of another: samples within the
-/// background's value of the surface are active, all others have that value with their side. Only bricks that the band
-/// meets are touched.
+/// Signed distances in a narrow band, as [`Redistance`] has them, from the signs and crossings of another: samples
+/// within the background's value of the surface are active, all others have that value with their side. Only bricks
+/// that the band meets are touched.
 ///
 /// # Errors
-/// A background that is not positive, a lattice too large or small for single precision, too little memory, or the reason to stop.
+/// A background that is not positive, a lattice too large or small for single precision, too little memory, or the
+/// reason to stop.
 pub fn redistance_band(source: &SparseBricks, exec: &Exec) -> Result<SparseBricks, ConvertError> {
     exec.check()?;
     let lattice = *source.lattice();

@@ -267,8 +267,8 @@ fn edges_of_a_cube_are_cut_by_less_than_a_cell() {
     assert!((halved[0] / found[0]).log2().abs() < 0.5, "{found:?} {halved:?}");
 }
 
-/// The largest distance of the cube's edges and corners from the interpolant's zeros, over several turns, in cells: along the
-/// outward diagonal, where it is largest by symmetry.
+/// The largest distance of the cube's edges and corners from the interpolant's zeros, over several turns, in cells:
+/// along the outward diagonal, where it is largest by symmetry.
 fn aliasing(n: u32, interpolation: Interpolation) -> [f64; 2] {
     let lattice = cube(n);
     let spacing = lattice.spacing().x;
@@ -328,6 +328,12 @@ fn strange_grids_are_refused_or_get_finite_distances() {
     assert!(empty.value.samples().get(0) > 3.0);
     let refused = CurvatureFlow::new(1e9).convert(&holes).unwrap_err();
     assert_eq!(refused.diagnostic().code(), "E-voxels-steps");
+    for background in [0.0, -1.0, f32::NAN] {
+        let bricks = SparseBricks::from_grid(&holes, background, &exec()).unwrap();
+        assert!(redistance_band(&bricks, &exec()).is_err());
+        assert!(blend_bands(&bricks, &bricks, Blend::Union, &exec()).is_err());
+        assert!(curvature_flow_band(&bricks, 1e-4, 0.5, &exec()).is_err());
+    }
     let other = grid_on(cube(8), |_| 1.0);
     let refused = blend(&holes, &other, Blend::Union, &exec()).unwrap_err();
     assert_eq!(refused.diagnostic().code(), "E-voxels-lattices");

@@ -33,8 +33,8 @@ impl Octree {
         Ok(Self { lattice, depth, root, children: growing.children })
     }
 
-    /// The cells whose centres have a negative value. Octants over which the field's [`range`](Field::range) has one sign are
-    /// decided as a whole, so a field that knows its range costs its surface's cells, any other all cells.
+    /// The cells whose centres have a negative value. Octants over which the field's [`range`](Field::range) has one
+    /// sign are decided as a whole, so a field that knows its range costs its surface's cells, any other all cells.
     ///
     /// # Errors
     /// More than 2^21 samples in a direction, too little memory, or the reason to stop.
@@ -70,7 +70,8 @@ impl Octree {
     }
 }
 
-/// Builds an octant, from its cells up. `decide` gives the leaf where it knows, and always at level 0. Depth is at most 21.
+/// Builds an octant, from its cells up. `decide` gives the leaf where it knows, and always at level 0. Depth is at most
+/// 21.
 fn build(
     decide: &impl Fn([u32; 3], u32) -> Option<Node>,
     base: [u32; 3],

@@ -7,8 +7,9 @@ use super::{EMPTY, FULL, Growing, Node, Octree, POLL_LEVEL, depth_of};
 use crate::VoxelError;
 
 impl Octree {
-    /// The tree as bits, depth first: 1 for an octant that is cut, followed by its eight children; 0 and a bit for a leaf, 1 if it is full.
-    /// Single cells are leaves always and have that one bit alone. The lowest bit of a byte is its first; the last byte is filled with zeros.
+    /// The tree as bits, depth first: 1 for an octant that is cut, followed by its eight children; 0 and a bit for a
+    /// leaf, 1 if it is full. Single cells are leaves always and have that one bit alone. The lowest bit of a byte is
+    /// its first; the last byte is filled with zeros.
     ///
     /// The bits say nothing of the lattice, which is kept beside them. Worst case: 8/7 bits a cell and one more.
     ///
@@ -41,8 +42,8 @@ impl Octree {
     /// The tree that [`encode`](Self::encode) made bits of.
     ///
     /// # Errors
-    /// A lattice of more than 2^21 samples in a direction, bits that end too early, that have eight equal leaves or go on after the tree,
-    /// too little memory, or the reason to stop.
+    /// A lattice of more than 2^21 samples in a direction, bits that end too early, that have eight equal leaves or go
+    /// on after the tree, too little memory, or the reason to stop.
     pub fn decode(bytes: &[u8], lattice: Lattice, exec: &Exec) -> Result<Self, ConvertError> {
         exec.check()?;
         let depth = depth_of(&lattice)?;

@@ -19,14 +19,17 @@ const FULL: Node = u32::MAX;
 /// Octants at or above this level are polled for: 4096 cells.
 const POLL_LEVEL: u32 = 4;
 
-/// A set of cells as an octree (Meagher 1982): a cube of 2^depth cells a side that is full, empty, or cut into eight octants.
+/// A set of cells as an octree (Meagher 1982): a cube of 2^depth cells a side that is full, empty, or cut into eight
+/// octants.
 ///
-/// The cube holds the cells of a [`Lattice`], from its first sample on; cells of the cube beyond the lattice are empty at first, and
-/// full after [`complement`](Self::complement). No octant has eight full or eight empty children, and nodes lie in depth-first
-/// order, so equal sets are equal trees. Lattices have at most 2^21 samples in a direction, so depth is at most 21.
+/// The cube holds the cells of a [`Lattice`], from its first sample on; cells of the cube beyond the lattice are empty
+/// at first, and full after [`complement`](Self::complement). No octant has eight full or eight empty children, and
+/// nodes lie in depth-first order, so equal sets are equal trees. Lattices have at most 2^21 samples in a direction, so
+/// depth is at most 21.
 ///
-/// Memory: 32 bytes for each octant that is cut, whose eight children are in it. Looking up a cell costs the depth; set operations
-/// cost the nodes of both trees at most. [`encode`](Self::encode) gives the form for keeping: less than two bits a node.
+/// Memory: 32 bytes for each octant that is cut, whose eight children are in it. Looking up a cell costs the depth; set
+/// operations cost the nodes of both trees at most. [`encode`](Self::encode) gives the form for keeping: less than two
+/// bits a node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Octree {
     lattice: Lattice,
@@ -158,8 +161,8 @@ impl Octree {
         cells
     }
 
-    /// The full octants, depth first: the smallest cell of each, and how many cells it has along a side. Those beyond the lattice are
-    /// among them after [`complement`](Self::complement).
+    /// The full octants, depth first: the smallest cell of each, and how many cells it has along a side. Those beyond
+    /// the lattice are among them after [`complement`](Self::complement).
     pub fn full_octants(&self) -> Vec<([u32; 3], u32)> {
         let mut found = Vec::new();
         // Seven siblings wait on each level at most.
