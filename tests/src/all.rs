@@ -56,6 +56,6 @@ mod support;
 mod topology;
 mod triangle_pairs;
 mod verification;
-mod voxelisation;
 mod volume_files;
+mod voxelisation;
 mod winding;

@@ -15,9 +15,9 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-bezier-degree", "A Bézier degree is above 255, beyond which an evaluation takes over a millisecond."),
     ("E-bezier-empty", "A curve has no control points."),
     ("E-bezier-finite", "A control point is infinite or not a number."),
-    ("E-bvh-index", "A triangle names a vertex that does not exist."),
-    ("E-bvh-finite", "A triangle's corner is infinite or not a number."),
     ("E-bvh-count", "There are more triangles than 32-bit ids can tell apart."),
+    ("E-bvh-finite", "A triangle's corner is infinite or not a number."),
+    ("E-bvh-index", "A triangle names a vertex that does not exist."),
     ("E-camera-bounds", "There is nothing to fit into the picture, or the picture has no size."),
     ("E-camera-fov", "The angle of view is not between 0 and 180 degrees."),
     ("E-camera-height", "The height of a parallel view is not a positive number."),
@@ -116,8 +116,8 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-output-exists", "The output exists already; --force replaces it."),
     ("E-output-format", "The output's format can be read but not written yet."),
     ("E-output-write", "The output cannot be written: a folder cannot be made, is not writable, or the disk is full."),
-    ("E-picture-format", "Pictures are written as PNG; give the output that extension."),
     ("E-picture-empty", "Nothing in the shape has a surface that could be drawn."),
+    ("E-picture-format", "Pictures are written as PNG; give the output that extension."),
     (
         "E-picture-size",
         "The shape is so large, so small or so far away that no view takes it in: squares of its coordinates are beyond the numbers.",
@@ -183,12 +183,12 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The mix of a workload is a list of KEY=N separated by commas. Keys are the nine queries VV, VE, VF, EV, EE, EF, FV, FE, FF, queries for all nine alike, updates for changes of the mesh, and size; numbers are finite and not negative, and at least one query or update is asked. Example: --mix VV=1e6,VF=2e5,updates=100.",
     ),
     (
-        "E-tessellation-rounding",
-        "The tolerance is smaller than the rounding of coordinates at this size; no mesh meets it.",
-    ),
-    (
         "E-tessellation-overflow",
         "Control points are so far apart that their differences overflow; scale the shape down.",
+    ),
+    (
+        "E-tessellation-rounding",
+        "The tolerance is smaller than the rounding of coordinates at this size; no mesh meets it.",
     ),
     ("E-tessellation-segments", "A curve or patch needs more segments than its option max_segments allows."),
     ("E-tessellation-size", "The tolerance asks for more vertices than 32-bit ids can tell apart."),
@@ -297,6 +297,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "Triangles lost their area when positions were rounded to the steps of a compact store: two of their corners are the same step. The report says how far vertices moved. Take more bits, or weld and simplify first.",
     ),
     (
+        "W-compare-open",
+        "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
+    ),
+    (
         "W-compare-size",
         "The area or volume of a shape is beyond the largest number, or so small that it vanishes: it is left out. Scale the shape to have them.",
     ),
@@ -331,10 +335,6 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-info-size",
         "The area or volume of a mesh is too large for the numbers, or so small that it would vanish. Scale the shape, by a power of two if no bit shall change.",
-    ),
-    (
-        "W-compare-open",
-        "A surface has sides that are not passed as often one way as the other, so it encloses no volume.",
     ),
     (
         "W-iso-empty",
@@ -422,14 +422,16 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-refine-small", "Triangles as small as the rounding of their coordinates stay as they are."),
     (
+        "W-surface-nets-edges",
+        "Edges of the result have more than two triangles, because two pieces of the surface pass through one cell and share its vertex. The method manifold-surface-nets gives each piece a vertex of its own.",
+    ),
+    (
         "W-voxel-lost",
         "Parts of the mesh are thinner than a cell, so no sample lies in them, or their faces look inward: the surface that the samples describe leaves them out. Choose smaller cells, or turn the faces.",
     ),
     (
         "W-voxel-open",
         "The mesh is not closed, so inside and outside are not given by it alone. Inside is where the generalised winding number is above 1/2, which closes holes smoothly; there the deviation is not known.",
-        "W-surface-nets-edges",
-        "Edges of the result have more than two triangles, because two pieces of the surface pass through one cell and share its vertex. The method manifold-surface-nets gives each piece a vertex of its own.",
     ),
 ];
 

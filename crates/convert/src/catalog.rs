@@ -7,8 +7,12 @@ use shapeloom_mesh::{
     TriangulateRegion, VertexNormals, Weld,
 };
 use shapeloom_parametric::{BezierCurve, BezierSurface, TessellateCurve, TessellatePatches};
-use shapeloom_voxels::{CellFaces, CurvatureFlow, MeshToDistance, OffsetLevelSet, PointsToGrid, Redistance, VoxelGrid, VoxelizeMesh};
-use shapeloom_voxels::isosurface::{DualContouring, ManifoldSurfaceNets, MarchingCubes, MarchingTetrahedra, SurfaceNets};
+use shapeloom_voxels::isosurface::{
+    DualContouring, ManifoldSurfaceNets, MarchingCubes, MarchingTetrahedra, SurfaceNets,
+};
+use shapeloom_voxels::{
+    CellFaces, CurvatureFlow, MeshToDistance, OffsetLevelSet, PointsToGrid, Redistance, VoxelGrid, VoxelizeMesh,
+};
 
 use crate::registry::{Converter, Effect, entry};
 
