@@ -137,6 +137,20 @@ fn a_band_has_the_distances_of_the_dense_grid() {
     assert!(error < 0.01, "{error}");
 }
 
+/// One sample inside, the first of its brick: most cells around it begin in bricks that are not stored.
+#[test]
+fn surface_that_reaches_out_of_the_stored_bricks_is_found() {
+    let lattice = cube(17);
+    let middle = lattice.position([8, 8, 8]);
+    let source = grid_on(lattice, |p| if p == middle { -0.3 } else { 0.5 });
+    let dense = Redistance { band: 0.5, ..Redistance::new() }.convert(&source).unwrap().value;
+    let band = redistance_band(&SparseBricks::narrow_band(&source, 0.5, &exec()).unwrap(), &exec()).unwrap();
+    for at in 0..lattice.samples() {
+        let place = lattice.coordinates(at);
+        assert!((band.sample(place) - dense.samples().get(at)).abs() < 1e-6, "{place:?}");
+    }
+}
+
 /// The volume where a sample counts by how far its cell lies inside.
 fn volume(grid: &VoxelGrid) -> f64 {
     let spacing = grid.lattice().spacing().x;
