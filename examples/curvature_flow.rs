@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let ball = sampled(48, 1.0, |p| p.length() - 0.7)?;
     let band = SparseBricks::narrow_band(&ball, 0.25, &exec)?;
     println!("{} bytes as a grid, {} as a band", ball.memory_bytes(), band.memory_bytes());
-    for time in [0.03, 0.09] {
+    for time in [0.03, 0.06, 0.09] {
         let wanted = (0.49f64 - 4.0 * time).sqrt();
         let dense = radius(&CurvatureFlow::new(time).convert(&ball)?.value)?;
         let sparse = radius(&curvature_flow_band(&band, time, 0.9, &exec)?.to_grid(&exec)?)?;

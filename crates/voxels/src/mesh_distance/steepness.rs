@@ -55,6 +55,12 @@ struct Part {
 /// How many parts are in a group.
 const GROUP: usize = 8;
 
+/// Groups of so small a size beside their distance are taken whole: their bound is too large by a half on average.
+const SMALL: f64 = 0.35;
+
+/// How many nodes wait at most: one on each level and one more, levels being fewer than bits of an index.
+const WAITING: usize = 66;
+
 /// Parts in a complete binary tree: the nodes of a level follow those of the level above, the last level being groups.
 struct Tree {
     parts: Vec<Part>,
@@ -99,11 +105,11 @@ impl Tree {
         Ok(Self { parts, nodes, levels, power, _memory: memory })
     }
 
-    /// What a part adds at most within `radius` of a place.
-    fn at_most(&self, part: &Part, center: DVec3, radius: f64) -> f64 {
-        let distance = part.bounds.distance_squared(center).sqrt() - radius;
+    /// What a part adds at most at a distance.
+    fn at_most(&self, part: &Part, distance: f64) -> f64 {
         match distance > 0.0 {
-            true => part.weight / distance.powi(self.power),
+            true if self.power == 2 => part.weight / (distance * distance),
+            true => part.weight / (distance * distance * distance),
             false if part.weight > 0.0 => f64::INFINITY,
             false => 0.0,
         }
@@ -112,18 +118,27 @@ impl Tree {
     fn is_at_most(&self, center: DVec3, radius: f64, slope: f64) -> bool {
         let total = self.nodes.first().map_or(0.0, |root| root.weight);
         let mut left = slope;
-        let mut stack = vec![(0u32, 0usize)];
-        while let Some((level, at)) = stack.pop() {
+        let mut waiting = [(0u32, 0usize); WAITING];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let (level, at) = waiting[count];
             let node = &self.nodes[(1usize << level) - 1 + at];
-            let share = self.at_most(node, center, radius);
-            // What is accepted whole takes half of the allowance in all at most.
-            if share <= 0.5 * slope * node.weight / total || node.weight == 0.0 {
+            let distance = node.bounds.distance_squared(center).sqrt() - radius;
+            let share = self.at_most(node, distance);
+            // Taken whole is what is small beside its distance, as opening it would lower the bound little, and what would stay within
+            // half of the allowance if all were like it.
+            let small = node.bounds.size().length_squared() <= SMALL * SMALL * distance * distance;
+            if (distance > 0.0 && small) || share <= 0.5 * slope * node.weight / total || node.weight == 0.0 {
                 left -= share;
             } else if level < self.levels {
-                stack.extend([(level + 1, 2 * at), (level + 1, 2 * at + 1)]);
+                waiting[count] = (level + 1, 2 * at);
+                waiting[count + 1] = (level + 1, 2 * at + 1);
+                count += 2;
             } else {
                 let parts = &self.parts[span(self.parts.len(), self.levels, level, at)];
-                left -= parts.iter().map(|part| self.at_most(part, center, radius)).sum::<f64>();
+                let each = |part: &Part| self.at_most(part, part.bounds.distance_squared(center).sqrt() - radius);
+                left -= parts.iter().map(each).sum::<f64>();
             }
             if left < 0.0 {
                 return false;
