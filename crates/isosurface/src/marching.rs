@@ -9,7 +9,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::{fill_chunks, map_chunks};
-use shapeloom_core::{ConvertError, Exec, Stop};
+use shapeloom_core::{ConvertError, Exec, OverBudget, Reservation, Stop};
 use shapeloom_mesh::MeshError;
 
 use crate::cell_topology::CellTopology;
@@ -265,15 +265,20 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
                 return Err(MeshError::TooMany { kind: "wedges", found: triangles.saturating_mul(3) }.into());
             }
             let known = starts.get(written.end).map_or(vertices, |&start| u64::from(start)) as usize;
-            let columns = if self.normals { 2 } else { 1 };
-            let more = (known - surface.positions.len()) as u64;
-            memory.push(exec.reserve_elements(more, columns * size_of::<DVec3>())?);
-            memory.push(exec.reserve_elements(triangles - surface.triangles.len() as u64, 12)?);
+            let part = written.end as f64 / planes as f64;
+            grow(&mut surface.positions, known, part, &mut memory, exec)?;
+            grow(&mut surface.triangles, triangles as usize, part, &mut memory, exec)?;
+            if let Some(normals) = &mut surface.normals {
+                grow(normals, known, part, &mut memory, exec)?;
+            }
             let mut blocks = surface.blocks(written.clone(), &starts, &layers, (known, triangles as usize));
             fill_chunks(exec, &mut blocks, 1, |_, block| {
                 block.iter_mut().try_for_each(|block| self.write_block(block, &rows, &layers, exec))
             })?;
         }
+        surface.positions.shrink_to_fit();
+        surface.triangles.shrink_to_fit();
+        surface.normals.iter_mut().for_each(Vec::shrink_to_fit);
         surface.working_bytes = size_of_val(rows.as_slice()) as u64;
         Ok(surface)
     }
@@ -465,6 +470,30 @@ impl Vertices<'_> {
         });
         normals[at] = self.site.normal(corners.sum(), DVec3::Z);
     }
+}
+
+/// Makes room for so many elements in all when a part of the lattice is done: first taken from the budget, and for as many as there
+/// will be if it goes on like this, where the budget has that much. What grows often is copied often.
+fn grow<T>(
+    vector: &mut Vec<T>,
+    needed: usize,
+    part: f64,
+    memory: &mut Vec<Reservation>,
+    exec: &Exec,
+) -> Result<(), OverBudget> {
+    let held = vector.capacity();
+    if needed > held {
+        let expected = if part < 1.0 { (needed as f64 * 1.02 / part) as usize } else { needed };
+        let expected = expected.clamp(needed, 16 * needed);
+        let reserve = |capacity: usize| exec.reserve_elements((capacity - held) as u64, size_of::<T>());
+        let (capacity, reserved) = match reserve(expected) {
+            Ok(reserved) => (expected, reserved),
+            Err(_) => (needed, reserve(needed)?),
+        };
+        memory.push(reserved);
+        vector.reserve_exact(capacity - vector.len());
+    }
+    Ok(())
 }
 
 /// Makes counts numbers, from `total` on: those of the first vertices of each row. Adds the first of each plane to `starts`.

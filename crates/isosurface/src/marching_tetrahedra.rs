@@ -15,7 +15,7 @@ options! {
     /// The tetrahedra lie around the cell's diagonal from the first corner to the last, the same in every cell, so that
     /// neighbours cut their common face alike. In a tetrahedron the samples have one linear interpolant, which leaves
     /// nothing open: with a closed border the result is a closed, oriented 2-manifold for any samples, and it is the exact
-    /// surface of the piecewise linear interpolant. It has about two and a half times as many triangles as marching cubes, and the
+    /// surface of the piecewise linear interpolant. It has about three times as many triangles as marching cubes, and the
     /// direction of the diagonal shows in it. The report says how many triangles marching cubes has (with its table).
     ///
     /// The deviation is that from the surface of the trilinear interpolant, of the solid cut off at the border where that is

@@ -6,6 +6,9 @@ use shapeloom_core::{Aabb, Affine};
 use crate::sums::compensated;
 use crate::{AttributeError, Column, Domain, ListColumn, MeshAttributes, MeshError, MeshOrigins, Origins, carry};
 
+/// How many triangles are checked at a time.
+const CHUNK: usize = 1 << 10;
+
 /// Triangles over shared vertices, counter-clockwise seen from outside, with attribute columns.
 ///
 /// Every index is in range, and every column has an element for each of its elements; nothing else is promised:
@@ -25,7 +28,12 @@ impl TriMesh {
     pub fn try_new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         crate::poly_mesh::check_count("vertices", positions.len())?;
         crate::poly_mesh::check_count("wedges", triangles.len().saturating_mul(3))?;
-        for (face, corners) in triangles.iter().enumerate() {
+        let vertices = positions.len();
+        // Whether all are in range is asked without a way out, many corners at a time; which one is not, only then.
+        let beyond = |corners: &[u32]| corners.iter().fold(0, |most, &corner| most.max(corner)) as usize >= vertices;
+        let strange = triangles.chunks(CHUNK).enumerate().filter(|(_, part)| beyond(part.as_flattened()));
+        let strange = strange.flat_map(|(chunk, part)| (chunk * CHUNK..).zip(part));
+        for (face, corners) in strange {
             if let Some(&found) = corners.iter().find(|&&corner| corner as usize >= positions.len()) {
                 return Err(MeshError::IndexOutOfRange {
                     face: face as u64,

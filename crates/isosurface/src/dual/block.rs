@@ -36,6 +36,8 @@ pub(super) struct Made {
     /// Their normals, if they were asked for.
     pub(super) normals: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
+    /// The vertices without triangles, in order: all edges that they stand for lie on an open border.
+    pub(super) unused: Vec<u32>,
     /// How many vertices belong to the layer below the run.
     pub(super) borrowed: usize,
     /// Samples of the run's slices that are not finite.
@@ -98,6 +100,8 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
             if plan.normals {
                 grow(&mut made.normals, count as usize, done, &mut made.memory, exec)?;
             }
+            let at_border = 4 * frame.cells_at_border(k).min(count as usize);
+            grow(&mut made.unused, at_border, done, &mut made.memory, exec)?;
             let slice = |from_layer: usize| (k + from_layer).checked_sub(1).and_then(|slice| frame.slab(slice));
             let slabs_around = ring.views(slabs, &mut spare, [0, 1, 2, 3].map(slice))?;
             collector.begin(k);
@@ -145,6 +149,7 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
         }
         std::mem::swap(&mut below, &mut layer);
     }
+    made.unused.sort_unstable();
     Ok(made)
 }
 
@@ -232,6 +237,10 @@ impl Collector {
                 let normal = (plan.cofactors * gradient).normalize_or_zero();
                 special |= !normal.is_finite() || normal == DVec3::ZERO;
                 made.normals.push(normal.to_array());
+            }
+            let edges = plan.frame.edges_at_border([column as usize, row as usize, self.layer]);
+            if edges != 0 && !special && PIECES[(batch.insides[n] & 255) as usize].edges[0] & !edges == 0 {
+                made.unused.push(vertex);
             }
             if special {
                 self.special.push(Special { key: batch.keys[n], cell: [column, row], vertex });
@@ -337,12 +346,16 @@ fn revise<R: VertexRule>(
         let pieces = &PIECES[index];
         let cell = Cell::new(surroundings, column, row, corners);
         let second = made.positions.len() as u32;
+        let at_border = frame.edges_at_border([column, row, surroundings.layer]);
         for piece in 0..usize::from(pieces.count) {
             let edges = pieces.edges[piece];
             let Placed { place, held } = rule.vertex(&cell, edges);
             made.held += u64::from(held && own);
             let position = plan.placement.point(cell.lattice_place() + place);
             let vertex = if piece == 0 { special.vertex } else { second + piece as u32 - 1 } as usize;
+            if edges & !at_border == 0 {
+                made.unused.push(vertex as u32);
+            }
             let normal = plan.normals.then(|| plan.placement.normal(rule.outward(&cell, edges, place)));
             if piece == 0 {
                 made.positions[vertex] = position;

@@ -46,6 +46,24 @@ pub(super) const fn edge_corners(edge: usize) -> [usize; 2] {
     [low, low | 1 << axis]
 }
 
+/// The edges of each face, a bit each: face `2 * axis`, and one more at its upper side.
+pub(super) const FACE_EDGES: [u16; 6] = face_edges();
+
+const fn face_edges() -> [u16; 6] {
+    let mut faces = [0; 6];
+    let mut at = 0;
+    while at < 72 {
+        let (face, edge) = (at / 12, at % 12);
+        let [p, q] = edge_corners(edge);
+        let (p, q) = (p >> (face / 2) & 1, q >> (face / 2) & 1);
+        if p == face % 2 && q == face % 2 {
+            faces[face] |= 1 << edge;
+        }
+        at += 1;
+    }
+    faces
+}
+
 /// The four corners of a face in turn.
 const fn face_corners(face: usize) -> [usize; 4] {
     let (axis, side) = (face / 2, face % 2);

@@ -46,7 +46,7 @@ pub(crate) fn extract<S: Slabs + ?Sized, R: VertexRule>(
     let cofactors = cofactors(&placement);
     let plan = Plan { frame, level, placement, normals, cofactors };
     let layers = frame.cells(2);
-    let mut surface = if workers(exec) > 1 && layers > LAYERS {
+    let (mut surface, unused) = if workers(exec) > 1 && layers > LAYERS {
         let all = layers.div_ceil(LAYERS);
         let runs = map_chunks(exec, layers, LAYERS, |run| {
             let part = |at: usize| at as f64 / all as f64 / LAYERS as f64;
@@ -58,17 +58,16 @@ pub(crate) fn extract<S: Slabs + ?Sized, R: VertexRule>(
         exec.check()?;
         let _memory = working_memory(&frame, exec)?;
         let made = make(slabs, rule, &plan, 0..layers, exec)?;
-        DualSurface {
+        let surface = DualSurface {
             positions: made.positions,
             normals: made.normals,
             triangles: made.triangles,
             not_finite: made.not_finite,
             held: made.held,
-        }
+        };
+        (surface, made.unused)
     };
-    if !closed {
-        surface.drop_unused(exec)?;
-    }
+    surface.drop_vertices(&unused, exec)?;
     Ok(surface)
 }
 
@@ -88,12 +87,15 @@ fn working_memory(frame: &Frame, exec: &Exec) -> Result<Reservation, ConvertErro
     Ok(exec.reserve((words * (4 * 8 + 2 * 20)).saturating_add(slab.saturating_mul(16)).saturating_add(1 << 14))?)
 }
 
-fn joined(runs: Vec<Made>, exec: &Exec) -> Result<DualSurface, ConvertError> {
+/// The surface of runs, and the vertices without triangles.
+fn joined(runs: Vec<Made>, exec: &Exec) -> Result<(DualSurface, Vec<u32>), ConvertError> {
     let vertices: usize = runs.iter().map(|run| run.positions.len() - run.borrowed).sum();
     let triangles: usize = runs.iter().map(|run| run.triangles.len()).sum();
     check_count(vertices)?;
     let normals = if runs.iter().any(|run| !run.normals.is_empty()) { vertices } else { 0 };
+    let unused = runs.iter().map(|run| run.unused.len()).sum();
     let _memory = [
+        exec.reserve_elements(unused as u64, size_of::<u32>())?,
         exec.reserve_elements((vertices + normals) as u64, size_of::<DVec3>())?,
         exec.reserve_elements(triangles as u64, size_of::<[u32; 3]>())?,
     ];
@@ -104,6 +106,7 @@ fn joined(runs: Vec<Made>, exec: &Exec) -> Result<DualSurface, ConvertError> {
         not_finite: 0,
         held: 0,
     };
+    let mut all_unused = Vec::with_capacity(unused);
     for run in runs {
         exec.check()?;
         // Numbers of a run begin with the last of the run before.
@@ -112,10 +115,12 @@ fn joined(runs: Vec<Made>, exec: &Exec) -> Result<DualSurface, ConvertError> {
         surface.normals.extend(run.normals.iter().skip(run.borrowed));
         let moved = |corners: &[u32; 3]| corners.map(|corner| corner.wrapping_add(shift));
         surface.triangles.extend(run.triangles.iter().map(moved));
+        let own = run.unused.iter().filter(|&&vertex| vertex as usize >= run.borrowed);
+        all_unused.extend(own.map(|vertex| vertex.wrapping_add(shift)));
         surface.not_finite += run.not_finite;
         surface.held += run.held;
     }
-    Ok(surface)
+    Ok((surface, all_unused))
 }
 
 fn check_count(vertices: usize) -> Result<(), ConvertError> {
@@ -126,31 +131,42 @@ fn check_count(vertices: usize) -> Result<(), ConvertError> {
 }
 
 impl DualSurface {
-    /// Takes away the vertices without triangles: those of cells at an open border, all of whose crossed edges lie on it.
+    /// Takes away the vertices without triangles, which are looked for.
     pub(crate) fn drop_unused(&mut self, exec: &Exec) -> Result<(), ConvertError> {
-        let _memory = exec.reserve_elements(self.positions.len() as u64, size_of::<u32>())?;
-        let mut number = vec![u32::MAX; self.positions.len()];
+        let _memory = exec.reserve_elements(self.positions.len() as u64, 1 + size_of::<u32>())?;
+        let mut used = vec![false; self.positions.len()];
         for corners in self.triangles.chunks(1 << 16) {
             exec.check()?;
-            corners.as_flattened().iter().for_each(|&corner| number[corner as usize] = 0);
+            corners.as_flattened().iter().for_each(|&corner| used[corner as usize] = true);
         }
-        let mut kept = 0u32;
-        for (at, number) in number.iter_mut().enumerate() {
-            if *number == 0 {
-                *number = kept;
-                self.positions[kept as usize] = self.positions[at];
-                if let Some(normal) = self.normals.get(at).copied() {
-                    self.normals[kept as usize] = normal;
-                }
-                kept += 1;
+        let unused: Vec<u32> = (0u32..).zip(&used).filter(|&(_, &used)| !used).map(|(at, _)| at).collect();
+        self.drop_vertices(&unused, exec)
+    }
+
+    /// Takes away vertices that no triangle has; they are in order.
+    fn drop_vertices(&mut self, unused: &[u32], exec: &Exec) -> Result<(), ConvertError> {
+        let Some(&first) = unused.first() else { return Ok(()) };
+        let _memory = exec.reserve_elements(self.positions.len() as u64, size_of::<u32>())?;
+        let mut number: Vec<u32> = (0..first).collect();
+        number.reserve_exact(self.positions.len() - number.len());
+        for (at, &gone) in unused.iter().enumerate() {
+            exec.check()?;
+            let next = unused.get(at + 1).map_or(self.positions.len(), |&next| next as usize);
+            let (start, end) = (gone as usize + 1, next);
+            let kept = start - at - 1;
+            number.push(u32::MAX);
+            number.extend(kept as u32..(kept + end - start) as u32);
+            self.positions.copy_within(start..end, kept);
+            if !self.normals.is_empty() {
+                self.normals.copy_within(start..end, kept);
             }
         }
-        if (kept as usize) < number.len() {
-            self.positions.truncate(kept as usize);
-            self.normals.truncate(kept as usize);
-            for corner in self.triangles.as_flattened_mut() {
-                *corner = number[*corner as usize];
-            }
+        let kept = self.positions.len() - unused.len();
+        self.positions.truncate(kept);
+        self.normals.truncate(kept);
+        for triangles in self.triangles.chunks_mut(1 << 16) {
+            exec.check()?;
+            triangles.as_flattened_mut().iter_mut().for_each(|corner| *corner = number[*corner as usize]);
         }
         Ok(())
     }

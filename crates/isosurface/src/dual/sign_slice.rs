@@ -2,6 +2,7 @@
 
 use multiversion::multiversion;
 
+use super::cell_tables::FACE_EDGES;
 use crate::Level;
 use crate::inside_bits::pack_row;
 
@@ -36,6 +37,28 @@ impl Frame {
     /// Words of a slice of signs: its rows, and a word of zeros.
     pub(super) fn slice_words(&self) -> usize {
         self.padded(1) * self.stride + 1
+    }
+
+    /// The edges of a cell that lie on an open border, a bit each: those have no four cells around them.
+    pub(super) fn edges_at_border(&self, cell: [usize; 3]) -> u16 {
+        if self.pad > 0 {
+            return 0;
+        }
+        let mut edges = 0;
+        for (axis, at) in cell.into_iter().enumerate() {
+            edges |= if at == 0 { FACE_EDGES[2 * axis] } else { 0 };
+            edges |= if at + 1 == self.cells(axis) { FACE_EDGES[2 * axis + 1] } else { 0 };
+        }
+        edges
+    }
+
+    /// How many cells of a layer lie at an open border.
+    pub(super) fn cells_at_border(&self, layer: usize) -> usize {
+        match (self.pad, layer) {
+            (0, layer) if layer == 0 || layer + 1 == self.cells(2) => self.cells(0) * self.cells(1),
+            (0, _) => 2 * (self.cells(0) + self.cells(1)),
+            _ => 0,
+        }
     }
 
     /// The slab of a slice, if it is not one of those around the lattice.
