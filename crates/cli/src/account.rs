@@ -111,7 +111,8 @@ pub(crate) fn step_words(step: &Step, seconds: Option<f64>) -> String {
         .report
         .figures
         .iter()
-        .filter(|figure| figure.value.fract() == 0.0)
+        // Counts; a value such as the iso value may be whole by chance.
+        .filter(|figure| figure.value.fract() == 0.0 && !figure.name.ends_with("_value"))
         .map(|figure| format!("{} {}", figure.value, figure.name.replace('_', " ")))
         .collect();
     let mut words = format!("{}: {} -> {}", step.converter, step.from, step.to);

@@ -1,8 +1,10 @@
 //! Inside and outside of a surface among samples.
 
+use std::fmt;
+
 use shapeloom_core::{ConvertError, Exec, Place, Report, Severity, choice};
 
-use crate::{IsoValue, Slabs, otsu_threshold};
+use crate::{IsoValue, Otsu, Slabs, otsu_threshold};
 
 /// On which side of the iso value the inside is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +24,36 @@ choice! {
         Below = "below",
         /// Larger values.
         Above = "above",
+    }
+}
+
+/// Where an iso value comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum IsoOrigin {
+    Given,
+    KindOfSamples,
+    Otsu(Otsu),
+}
+
+/// How a level was found, in words by [`Display`](fmt::Display).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IsoWords {
+    level: Level,
+    origin: IsoOrigin,
+}
+
+impl fmt::Display for IsoWords {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let origin = match self.origin {
+            IsoOrigin::Given => "as given",
+            IsoOrigin::KindOfSamples => "as the kind of samples says",
+            IsoOrigin::Otsu(_) => "Otsu's threshold",
+        };
+        let side = match self.level.inside {
+            Inside::Below => "below",
+            Inside::Above => "above",
+        };
+        write!(f, "iso value {} ({origin}), inside {side}", self.level.iso)
     }
 }
 
@@ -74,40 +106,48 @@ impl Level {
         iso: IsoValue,
         inside: InsideChoice,
         exec: &Exec,
-    ) -> Result<(Self, String), ConvertError> {
+    ) -> Result<(Self, IsoWords), ConvertError> {
         let inside = match inside {
             InsideChoice::Auto => slabs.inside(),
             InsideChoice::Below => Inside::Below,
             InsideChoice::Above => Inside::Above,
         };
-        let (iso, source) = match (iso, slabs.default_iso()) {
-            (IsoValue::At(value), _) => (value as f32, "as given".to_owned()),
-            (IsoValue::Auto, Some(value)) => (value as f32, "as the kind of samples says".to_owned()),
+        let (iso, origin) = match (iso, slabs.default_iso()) {
+            (IsoValue::At(value), _) => (value, IsoOrigin::Given),
+            (IsoValue::Auto, Some(value)) => (value, IsoOrigin::KindOfSamples),
             (IsoValue::Auto, None) => {
                 let otsu = otsu_threshold(slabs, exec)?;
-                (otsu.threshold as f32, "Otsu's threshold".to_owned())
+                (otsu.threshold, IsoOrigin::Otsu(otsu))
             }
         };
-        let side = match inside {
-            Inside::Below => "below",
-            Inside::Above => "above",
-        };
-        Ok((Self { iso, inside }, format!("iso value {iso} ({source}), inside {side}")))
+        let level = Self { iso: iso as f32, inside };
+        Ok((level, IsoWords { level, origin }))
     }
 
-    /// Tells of samples that are not finite, and of a surface without triangles with the range of the samples.
+    /// Tells of an iso value that was guessed, of samples that are not finite, and of a surface without triangles with the range of
+    /// the samples.
     ///
     /// # Errors
     /// A slab cannot be had, or the reason to stop.
     pub fn tell<S: Slabs + ?Sized>(
         &self,
         slabs: &S,
+        how: &IsoWords,
         not_finite: u64,
         triangles: u64,
         report: &mut Report,
         exec: &Exec,
     ) -> Result<(), ConvertError> {
         report.figure("iso_value", f64::from(self.iso));
+        if let IsoOrigin::Otsu(otsu) = how.origin {
+            let message = format!(
+                "the iso value was guessed: {} is Otsu's threshold; parting the samples there leaves {:.0} % of their variance \
+                 within the two classes",
+                self.iso,
+                100.0 * (1.0 - otsu.separability)
+            );
+            report.findings.push("W-iso-otsu", Severity::Note, Place::Whole, message);
+        }
         if not_finite > 0 {
             let message = "samples that are NaN or infinite count as outside";
             report.findings.push_many("W-iso-not-finite", Severity::Warning, Place::Whole, message, not_finite);

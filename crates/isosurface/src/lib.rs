@@ -36,7 +36,7 @@ pub use error::LatticeError;
 pub use field_slabs::FieldSlabs;
 pub use iso_value::IsoValue;
 pub use lattice::Lattice;
-pub use level::{Inside, InsideChoice, Level};
+pub use level::{Inside, InsideChoice, IsoWords, Level};
 pub use manifold_surface_nets::ManifoldSurfaceNets;
 pub use marching_cubes::{MarchingCubes, Topology};
 pub use marching_tetrahedra::MarchingTetrahedra;

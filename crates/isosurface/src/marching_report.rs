@@ -6,14 +6,14 @@ use shapeloom_mesh::{Blend, Column, Domain, MeshError, NORMAL, TransformRule, Tr
 
 use crate::lattice_bits::LatticeBits;
 use crate::marching::Surface;
-use crate::{Level, Slabs};
+use crate::{IsoWords, Level, Slabs};
 
 /// The report on a surface.
 pub(crate) fn told<S: Slabs + ?Sized>(
     name: &'static str,
     slabs: &S,
     level: Level,
-    how: &str,
+    how: &IsoWords,
     bits: &LatticeBits,
     surface: &Surface,
     exec: &Exec,
@@ -29,7 +29,7 @@ pub(crate) fn told<S: Slabs + ?Sized>(
     report.figure("vertices", surface.positions.len() as f64);
     report.figure("triangles", surface.triangles.len() as f64);
     report.figure("working_bytes", (bits.memory_bytes() as u64 + surface.working_bytes) as f64);
-    level.tell(slabs, bits.not_finite, surface.triangles.len() as u64, &mut report, exec)?;
+    level.tell(slabs, how, bits.not_finite, surface.triangles.len() as u64, &mut report, exec)?;
     Ok(report)
 }
 

@@ -4,14 +4,14 @@ use shapeloom_core::{ConvertError, Converted, Deviation, Exec, Report};
 use shapeloom_mesh::{Blend, Column, Domain, MeshError, NORMAL, TransformRule, TriMesh, Values};
 
 use crate::dual::DualSurface;
-use crate::{Border, Lattice, Level, Slabs};
+use crate::{Border, IsoWords, Lattice, Level, Slabs};
 
 /// The mesh of a dual surface, and the report.
 pub(crate) fn finish<S: Slabs + ?Sized>(
     step: &'static str,
     source: &S,
     surface: DualSurface,
-    (level, how): (Level, String),
+    (level, how): (Level, IsoWords),
     border: Border,
     exec: &Exec,
 ) -> Result<Converted<TriMesh>, ConvertError> {
@@ -35,7 +35,7 @@ pub(crate) fn finish<S: Slabs + ?Sized>(
     let mut report = Report::new(step, deviation, format!("{basis}; {how}"));
     report.figure("vertices", mesh.positions().len() as f64);
     report.figure("triangles", mesh.triangles().len() as f64);
-    level.tell(source, not_finite, mesh.triangles().len() as u64, &mut report, exec)?;
+    level.tell(source, &how, not_finite, mesh.triangles().len() as u64, &mut report, exec)?;
     Ok(Converted::new(mesh, report))
 }
 

@@ -110,7 +110,7 @@ impl<S: Slabs + ?Sized> Convert<S> for CellFaces {
             ),
         };
         let mut report = Report::new(Self::NAME, deviation, format!("{words}; {basis}"));
-        level.tell(source, cells.not_finite, mesh.face_count() as u64, &mut report, exec)?;
+        level.tell(source, &words, cells.not_finite, mesh.face_count() as u64, &mut report, exec)?;
         report.figure("vertices", mesh.positions().len() as f64);
         report.figure("faces", mesh.face_count() as f64);
         report.figure("cell_faces", faces as f64);

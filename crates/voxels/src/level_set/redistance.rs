@@ -61,7 +61,7 @@ impl Convert<VoxelGrid> for Redistance {
             _ => (Deviation::Unknown, "samples that are not finite have no interpolant"),
         };
         let mut report = Report::new(Self::NAME, deviation, format!("{words}; {basis}"));
-        level.tell(source, not_finite, surface_cells, &mut report, exec)?;
+        level.tell(source, &words, not_finite, surface_cells, &mut report, exec)?;
         report.figure("surface_cells", surface_cells as f64);
         exec.progress(1.0);
         Ok(Converted::new(distance_grid(lattice, values)?, report))
