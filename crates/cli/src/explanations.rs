@@ -344,7 +344,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "W-iso-not-finite",
         "Samples that are NaN or infinite count as outside; the surface closes around them in the middle of the cells.",
     ),
-    ("W-iso-otsu", "No iso value was given, and the samples are densities, whose scale only they know: Otsu's threshold between two classes of samples was taken. Set iso= to another value if the surface is not the one you want; info gives the range of the samples."),
+    (
+        "W-iso-otsu",
+        "No iso value was given, and the samples are densities, whose scale only they know: Otsu's threshold between two classes of samples was taken. Set iso= to another value if the surface is not the one you want; info gives the range of the samples.",
+    ),
     (
         "W-orient-one-sided",
         "A part of the surface has one side only and was left as it is. The ring of faces at the place named comes back to its first face turned over.",

@@ -39,7 +39,9 @@ impl Plan {
 }
 
 /// The shortest way from a kind that does what is wished; between ways of equal length the one whose converters stand
-/// first in the registry. Converters that are [`only_by_name`](field@Converter::only_by_name) are on it only where they are named.
+/// first in the registry. Converters that are [`only_by_name`](field@Converter::only_by_name) are on it only where they are named:
+/// by `method`, or, where nothing else leads to the kind of `via`, by that kind. Of several that make it the one is taken to which
+/// the fewest steps lead, the first in the registry between equals.
 ///
 /// # Errors
 /// There is no such way, or no converter of that name.
@@ -66,7 +68,8 @@ pub fn plan(from: Kind, wish: &Wish) -> Result<Plan, PlanError> {
         && !steps.iter().any(|step| step.to == via)
         && at != via
     {
-        steps.extend(shortest(at, &[via]).ok_or_else(|| no_way(at, &[via]))?);
+        let way = shortest(at, &[via]).or_else(|| named_by_kind(at, via));
+        steps.extend(way.ok_or_else(|| no_way(at, &[via]))?);
         at = via;
     }
     steps.extend(shortest(at, &wish.targets).ok_or_else(|| no_way(at, &wish.targets))?);
@@ -126,6 +129,17 @@ fn shortest(from: Kind, targets: &[Kind]) -> Option<Vec<&'static Converter>> {
     }
     steps.reverse();
     Some(steps)
+}
+
+/// The shortest way whose last step is a converter that must be named and makes the kind asked for.
+fn named_by_kind(from: Kind, to: Kind) -> Option<Vec<&'static Converter>> {
+    let makes = registry().iter().filter(|step| step.only_by_name && step.to == to);
+    let ways = makes.filter_map(|step| {
+        let mut steps = shortest(from, &[step.from])?;
+        steps.push(step);
+        Some(steps)
+    });
+    ways.min_by_key(Vec::len)
 }
 
 /// The converters that would lead there if they were named.
@@ -190,6 +204,29 @@ mod tests {
             let wish = Wish { method: Some(name.into()), ..Wish::to([Kind::TriMesh]) };
             assert_eq!(names(&plan(kind, &wish).unwrap()).last(), Some(&name));
         }
+    }
+
+    /// A kind on the way names what makes it, but only where no other converter does.
+    #[test]
+    fn a_kind_on_the_way_names_the_converter_that_makes_it() {
+        let through = |from: Kind, via: Kind, method: Option<&str>, to: Kind| {
+            let wish = Wish { via: Some(via), method: method.map(str::to_owned), ..Wish::to([to]) };
+            plan(from, &wish).map(|plan| names(&plan))
+        };
+        let made = through(Kind::TriMesh, Kind::VoxelGrid, None, Kind::TriMesh).unwrap();
+        assert_eq!(made.first(), Some(&"mesh-to-distance"), "{made:?}");
+        assert!(made.len() > 1);
+        let made = through(Kind::PolyMesh, Kind::VoxelGrid, None, Kind::VoxelGrid).unwrap();
+        assert_eq!(made, ["triangulate-polygons", "mesh-to-distance"]);
+        let made = through(Kind::TriMesh, Kind::VoxelGrid, Some("voxelize-mesh"), Kind::VoxelGrid).unwrap();
+        assert_eq!(made, ["voxelize-mesh"]);
+        let made = through(Kind::PointCloud, Kind::VoxelGrid, None, Kind::VoxelGrid).unwrap();
+        assert_eq!(made, ["points-to-grid"]);
+        assert_eq!(through(Kind::PointCloud, Kind::TriMesh, None, Kind::TriMesh).unwrap(), ["delaunay-triangulation"]);
+        // An ordinary converter comes first, and without the kind on the way the error says what to name.
+        assert_eq!(through(Kind::PolyMesh, Kind::TriMesh, None, Kind::TriMesh).unwrap(), ["triangulate-polygons"]);
+        let error = plan(Kind::TriMesh, &Wish::to([Kind::VoxelGrid])).unwrap_err();
+        assert!(error.advice().is_some_and(|advice| advice.contains("--method mesh-to-distance")), "{error}");
     }
 
     #[test]
