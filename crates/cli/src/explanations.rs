@@ -210,7 +210,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-threads", "That many threads could not be started."),
     (
         "E-voxel-cell-size",
-        "With this cell size distances or volumes leave single precision, or the lattice has too many samples, or they would fall on each other far from the origin. Choose another cell size or resolution, or scale or move the shape.",
+        "With this cell size distances or volumes leave single precision, or the lattice has too many samples, or they would fall on each other far from the origin: the message says which. Choose another cell size, resolution, margin or radius, or scale or move the shape.",
     ),
     (
         "E-voxel-lattice",
@@ -239,6 +239,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-voxels-steps",
         "Curvature flow would take more than a million steps. Ask for less time, or resample the grid coarser: the number of steps grows with the inverse square of the spacing.",
+    ),
+    (
+        "E-voxels-thin",
+        "Level sets need cells, and a lattice that is one sample thick has none. Make meshes of it directly, or resample it with two samples or more in each direction.",
     ),
     (
         "W-cells-merged",
@@ -432,6 +436,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-voxel-lost",
         "Parts of the mesh are thinner than a cell, so no sample lies in them, or their faces look inward: the surface that the samples describe leaves them out. Choose smaller cells, or turn the faces.",
+    ),
+    (
+        "W-voxel-nothing",
+        "A mesh was sampled, but no sample is inside: it has no volume, is not closed, looks inward or is thinner than a cell. A higher resolution may help; a surface that encloses nothing has no inside.",
     ),
     (
         "W-voxel-open",

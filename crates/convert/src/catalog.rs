@@ -36,7 +36,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<MeshToDistance, TriMesh>(Effect::Reported).only_by_name(),
         entry::<VoxelizeMesh, TriMesh>(Effect::Reported).only_by_name(),
         entry::<PointsToGrid, PointCloud>(Effect::Reported).only_by_name(),
-        entry::<CellFaces, VoxelGrid>(Effect::Reported),
+        entry::<CellFaces, VoxelGrid>(Effect::Reported).only_by_name(),
         entry::<Weld, TriMesh>(Effect::Reported),
         entry::<Weld, PolyMesh>(Effect::Reported),
         entry::<OrientFaces, TriMesh>(Effect::Exact),

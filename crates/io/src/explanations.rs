@@ -652,6 +652,10 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "How many slices were read, and which was the last: those after a missing number are another stack.",
     ),
     ("W-volume-trailing", "More bytes follow after the samples of a volume than its header says. They were not read."),
+    (
+        "W-volume-truncated",
+        "Compressed samples end before the checksum that follows them: all are there, but damage cannot be told. Get a complete copy.",
+    ),
     ("W-vti-piece", "A VTI file is one piece of a larger whole, whose other pieces are in other files."),
     (
         "W-vtk-more",

@@ -1,6 +1,6 @@
 //! The value that a surface is drawn at.
 
-use shapeloom_core::{OptionKind, OptionType, OptionValue};
+use shapeloom_core::{Bounds, OptionKind, OptionType, OptionValue};
 
 /// The value that a surface is drawn at.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -10,6 +10,11 @@ pub enum IsoValue {
     Auto,
     /// This value, rounded to single precision.
     At(f64),
+}
+
+impl IsoValue {
+    /// The values that single precision holds.
+    pub const BOUNDS: Bounds = Bounds::closed(f32::MIN as f64, f32::MAX as f64);
 }
 
 impl OptionType for IsoValue {

@@ -1,6 +1,6 @@
 //! Surface nets that are always manifold.
 
-use shapeloom_core::{Bounds, Convert, ConvertError, Converted, Exec, FromTolerance, Options, options};
+use shapeloom_core::{Convert, ConvertError, Converted, Exec, FromTolerance, Options, options};
 use shapeloom_mesh::TriMesh;
 
 use crate::dual::{MeanOfCrossings, extract};
@@ -22,7 +22,7 @@ options! {
         required {}
         optional {
             /// The value that the surface is drawn at; `auto` is 0 for distances, a half for occupancy, else Otsu's threshold.
-            iso: IsoValue [Bounds::FINITE] = IsoValue::Auto,
+            iso: IsoValue [IsoValue::BOUNDS] = IsoValue::Auto,
             /// On which side of it the inside is; `auto` is below for distances, above for densities.
             inside: InsideChoice = InsideChoice::Auto,
             /// Whether the surface is closed where the inside reaches the border of the lattice.

@@ -257,8 +257,9 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
             counted = counted.end..if end == planes { planes } else { end - 1 };
             self.count(counted.clone(), &mut rows, &mut layers, exec)?;
             let of_planes = &mut rows[counted.start * row_count..counted.end * row_count];
-            vertices = number(of_planes, row_count, vertices, &mut starts)?;
+            // Numbering turns the counts into where they begin.
             surface.inner_vertices += of_planes.iter().map(|row| u64::from(row.inner)).sum::<u64>();
+            vertices = number(of_planes, row_count, vertices, &mut starts)?;
             written = written.end..if end == planes { planes } else { counted.end - 1 };
             triangles += layers[written.clone()].iter().sum::<u64>();
             if triangles.saturating_mul(3) >= u64::from(u32::MAX) {

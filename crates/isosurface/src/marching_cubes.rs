@@ -44,7 +44,7 @@ options! {
         required {}
         optional {
             /// The value that the surface is drawn at; by itself what the samples suggest.
-            iso: IsoValue [shapeloom_core::Bounds::FINITE] = IsoValue::Auto,
+            iso: IsoValue [IsoValue::BOUNDS] = IsoValue::Auto,
             /// On which side of the value the inside is.
             inside: InsideChoice = InsideChoice::Auto,
             /// What the surface does at the border of the lattice.

@@ -3,9 +3,7 @@
 use fast_surface_nets::ndshape::{RuntimeShape, Shape};
 use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{
-    Bounds, Convert, ConvertError, Converted, Exec, FromTolerance, Options, Place, Severity, options,
-};
+use shapeloom_core::{Convert, ConvertError, Converted, Exec, FromTolerance, Options, Place, Severity, options};
 use shapeloom_mesh::{MeshError, TriMesh};
 
 use crate::dual::DualSurface;
@@ -24,7 +22,7 @@ options! {
         required {}
         optional {
             /// The value that the surface is drawn at; `auto` is 0 for distances, a half for occupancy, else Otsu's threshold.
-            iso: IsoValue [Bounds::FINITE] = IsoValue::Auto,
+            iso: IsoValue [IsoValue::BOUNDS] = IsoValue::Auto,
             /// On which side of it the inside is; `auto` is below for distances, above for densities.
             inside: InsideChoice = InsideChoice::Auto,
             /// Whether the surface is closed where the inside reaches the border of the lattice.

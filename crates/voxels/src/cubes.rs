@@ -24,20 +24,23 @@ pub(crate) fn around(
         0.0 => 1.0,
         given => given,
     };
-    let wrong = VoxelizeError::CellSize { found: cell, cells: longest / cell };
+    let wrong = |expected| VoxelizeError::CellSize { found: cell, cells: longest / cell, expected };
     if !(1e-30..=1e30).contains(&cell) || longest / cell > 1e9 {
-        return Err(wrong);
+        return Err(wrong("a size from 1e-30 to 1e30 and at most 1e9 cells along the shape"));
     }
     // Twice the margin, and a sample more than cells.
     let counts = (size / cell).ceil().to_array().map(|cells| cells as u64 + 2 * u64::from(margin) + 1);
     let dimensions = counts.map(|count| count.min(u64::from(u32::MAX)) as u32);
     let extent = DVec3::from_array(dimensions.map(|count| f64::from(count - 1) * cell));
-    let lattice =
-        Lattice::along_axes(dimensions, center - extent * 0.5, DVec3::splat(cell)).map_err(|_| wrong.clone())?;
+    let lattice = Lattice::along_axes(dimensions, center - extent * 0.5, DVec3::splat(cell))
+        .map_err(|_| wrong("at most 2^40 samples with the margin, and 2^31 in a slab"))?;
     // Far from the origin samples would fall on each other.
     let far = lattice.bounds();
     let ulp = far.min.abs().max(far.max.abs()).max_element() * 2f64.powi(-48);
-    if ulp > cell { Err(wrong) } else { Ok((lattice, cell)) }
+    match ulp > cell {
+        true => Err(wrong("samples that do not fall on each other so far from the origin")),
+        false => Ok((lattice, cell)),
+    }
 }
 
 /// The size of a lattice's cells, which must be cubes along the axes.
@@ -52,6 +55,7 @@ pub(crate) fn cell_size_of(lattice: &Lattice) -> Result<f64, VoxelizeError> {
         return Err(VoxelizeError::CellSize {
             found: size,
             cells: f64::from(lattice.dimensions().into_iter().max().unwrap_or(0)),
+            expected: "a size from 1e-30 to 1e30",
         });
     }
     Ok(size)

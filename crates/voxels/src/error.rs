@@ -30,6 +30,11 @@ pub enum VoxelError {
         /// What was found.
         found: f32,
     },
+    /// A lattice that is one sample thick, so that it has no cells.
+    Thin {
+        /// The samples in each direction.
+        dimensions: [u32; 3],
+    },
     /// A number that single precision does not hold.
     Overflow {
         /// What the number is.
@@ -77,6 +82,9 @@ impl fmt::Display for VoxelError {
             Self::Overflow { what, found } => {
                 write!(f, "grid: found {what} of {found:e}, expected one that single precision holds")
             }
+            Self::Thin { dimensions: [x, y, z] } => {
+                write!(f, "level set: found {x} x {y} x {z} samples, expected at least two in each direction")
+            }
             Self::Steps { found, most } => {
                 write!(f, "curvature flow: found a need of {found:e} steps, expected at most {most}")
             }
@@ -99,6 +107,7 @@ impl Diagnostic for VoxelError {
             Self::NotFinite { .. } => "E-voxels-finite",
             Self::Overflow { .. } => "E-voxels-overflow",
             Self::Steps { .. } => "E-voxels-steps",
+            Self::Thin { .. } => "E-voxels-thin",
             Self::OctreeEnds { .. } => "E-octree-end",
             Self::OctreeEqual { .. } => "E-octree-equal",
             Self::OctreeTrails { .. } => "E-octree-trailing",
@@ -109,6 +118,7 @@ impl Diagnostic for VoxelError {
         match self {
             Self::TooLarge { .. } | Self::Steps { .. } => Category::OverLimit,
             Self::Lattices { .. } | Self::Overflow { .. } => Category::Usage,
+            Self::Thin { .. } => Category::Unsupported,
             _ => Category::Malformed,
         }
     }

@@ -113,7 +113,8 @@ impl PointsToGrid {
         // Points a volume would leave single precision.
         if self.weight == PointWeight::Kernel && !(1e-12..=1e12).contains(&cell_size) {
             let cells = lattice.dimensions().into_iter().max().unwrap_or(0);
-            return Err(VoxelizeError::CellSize { found: cell_size, cells: f64::from(cells) }.into());
+            let expected = "a size from 1e-12 to 1e12 for densities";
+            return Err(VoxelizeError::CellSize { found: cell_size, cells: f64::from(cells), expected }.into());
         }
         let names = cloud.attributes().iter().map(|column| format!("vertex attribute \"{}\"", column.name()));
         let lists = cloud.attributes().lists().iter().map(|list| format!("vertex list \"{}\"", list.name()));

@@ -18,6 +18,8 @@ pub enum VoxelizeError {
         found: f64,
         /// How many cells the longest side of the shape's box has with it.
         cells: f64,
+        /// What is expected of cells.
+        expected: &'static str,
     },
     /// A lattice that is not one of cubes along the axes.
     Lattice,
@@ -27,11 +29,8 @@ impl fmt::Display for VoxelizeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Position { element } => write!(f, "position {element} is not finite, expected numbers"),
-            Self::CellSize { found, cells } => {
-                write!(
-                    f,
-                    "found a cell size of {found:e} for {cells:.4e} cells, expected 1e-30 to 1e30 (for densities 1e-12 to 1e12) and at most 2^40 samples"
-                )
+            Self::CellSize { found, cells, expected } => {
+                write!(f, "found a cell size of {found:e} for {cells:.4e} cells, expected {expected}")
             }
             Self::Lattice => f.write_str("found a lattice with other steps, expected cubes along the axes"),
         }
@@ -59,6 +58,6 @@ impl Diagnostic for VoxelizeError {
 
     fn advice(&self) -> Option<String> {
         matches!(self, Self::CellSize { .. })
-            .then(|| "choose another cell size or resolution, or scale the shape".into())
+            .then(|| "choose another cell size, resolution, margin or radius, or scale or move the shape".into())
     }
 }

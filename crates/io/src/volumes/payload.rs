@@ -164,6 +164,10 @@ impl<'a> Payload<'a> {
             let expected = format!("{count} samples of type {}, as the header says", coding.scalar.name());
             return Err(self.fault("E-volume-trailing", unpacked.position(), found, expected).into());
         }
+        if unpacked.cut {
+            let message = "the packed data end before their checksum: all samples are there, but nothing shows that they are right";
+            findings.push("W-volume-truncated", Severity::Warning, self.place(self.len()), message);
+        }
         let position = unpacked.position();
         if position < self.len() {
             let message =
@@ -185,7 +189,10 @@ impl<'a> Payload<'a> {
                     }
                 }
                 Ok(more) => filled += more,
-                Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => break,
+                Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+                    unpacked.cut = true;
+                    break;
+                }
                 Err(error) => {
                     let expected = "sound compressed data".to_owned();
                     let fault = self.fault("E-volume-data", unpacked.position(), error.to_string(), expected);
@@ -201,31 +208,39 @@ impl<'a> Payload<'a> {
 const PIECE: usize = 1 << 16;
 
 /// Compressed bytes.
-enum Unpacked<'a> {
-    Gzip(GzDecoder<&'a [u8]>, usize),
-    Zlib(ZlibDecoder<&'a [u8]>, usize),
+struct Unpacked<'a> {
+    decoder: Decoder<'a>,
+    packed: usize,
+    /// Whether they ended before the compression said so.
+    cut: bool,
+}
+
+enum Decoder<'a> {
+    Gzip(GzDecoder<&'a [u8]>),
+    Zlib(ZlibDecoder<&'a [u8]>),
 }
 
 impl<'a> Unpacked<'a> {
     fn new(bytes: &'a [u8], packing: &Packing) -> Self {
-        match packing {
-            Packing::Zlib => Self::Zlib(ZlibDecoder::new(bytes), bytes.len()),
-            Packing::Gzip | Packing::Plain => Self::Gzip(GzDecoder::new(bytes), bytes.len()),
-        }
+        let decoder = match packing {
+            Packing::Zlib => Decoder::Zlib(ZlibDecoder::new(bytes)),
+            Packing::Gzip | Packing::Plain => Decoder::Gzip(GzDecoder::new(bytes)),
+        };
+        Self { decoder, packed: bytes.len(), cut: false }
     }
 
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         use std::io::Read;
-        match self {
-            Self::Gzip(decoder, _) => decoder.read(buffer),
-            Self::Zlib(decoder, _) => decoder.read(buffer),
+        match &mut self.decoder {
+            Decoder::Gzip(decoder) => decoder.read(buffer),
+            Decoder::Zlib(decoder) => decoder.read(buffer),
         }
     }
 
     /// Goes on with the next member of a gzip file, if there is one.
     fn next_member(&mut self) -> bool {
-        match self {
-            Self::Gzip(decoder, _) if decoder.get_ref().starts_with(&[0x1f, 0x8b]) => {
+        match &mut self.decoder {
+            Decoder::Gzip(decoder) if decoder.get_ref().starts_with(&[0x1f, 0x8b]) => {
                 *decoder = GzDecoder::new(*decoder.get_ref());
                 true
             }
@@ -235,10 +250,10 @@ impl<'a> Unpacked<'a> {
 
     /// How many packed bytes were read.
     fn position(&self) -> u64 {
-        let (left, all) = match self {
-            Self::Gzip(decoder, all) => (decoder.get_ref().len(), all),
-            Self::Zlib(decoder, all) => (decoder.get_ref().len(), all),
+        let left = match &self.decoder {
+            Decoder::Gzip(decoder) => decoder.get_ref().len(),
+            Decoder::Zlib(decoder) => decoder.get_ref().len(),
         };
-        (all - left) as u64
+        (self.packed - left) as u64
     }
 }

@@ -43,7 +43,8 @@ pub(crate) fn read_stack(input: &[u8], context: &ReadContext, planes: Planes) ->
             |found: String| Fault::new("E-volume-stack", Place::Whole, found, "slices beside each other, one a number");
         let mut at = name.number;
         loop {
-            at = at.saturating_add(1);
+            let Some(following) = at.checked_add(1) else { break };
+            at = following;
             let next = name.with(at);
             let sibling = SiblingName::try_new(&next).map_err(|_| wrong(quoted(next.as_bytes())))?;
             match open(siblings.as_ref(), &sibling, u64::MAX, context)? {

@@ -6,8 +6,7 @@ mod separate;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
-    Affine, Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report, Severity,
-    options,
+    Affine, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report, Severity, options,
 };
 use shapeloom_isosurface::{InsideChoice, IsoValue, Lattice, Level, Slabs};
 use shapeloom_mesh::{MeshError, PolyMesh};
@@ -39,7 +38,7 @@ options! {
         required {}
         optional {
             /// The value that parts inside and outside; auto for what the samples suggest.
-            iso: IsoValue [Bounds::FINITE] = IsoValue::Auto,
+            iso: IsoValue [IsoValue::BOUNDS] = IsoValue::Auto,
             /// On which side of the value the inside is.
             inside: InsideChoice = InsideChoice::Auto,
             /// Whether coplanar faces become larger rectangles, whose edges then do not match.

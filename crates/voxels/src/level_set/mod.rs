@@ -50,8 +50,12 @@ fn distance_grid(lattice: Lattice, values: Vec<f32>) -> Result<VoxelGrid, Conver
     Ok(VoxelGrid::try_new(lattice, Samples::F32(values), Quantity::SignedDistance)?)
 }
 
-/// Distances must be numbers of single precision.
+/// There must be cells, and distances must be numbers of single precision.
 fn check_scale(lattice: &Lattice) -> Result<(), VoxelError> {
+    let dimensions = lattice.dimensions();
+    if dimensions.contains(&1) {
+        return Err(VoxelError::Thin { dimensions });
+    }
     let far = lattice.bounds().diagonal() + lattice.cell_diagonal();
     if far > f64::from(f32::MAX) / 4.0 || far.is_nan() {
         return Err(VoxelError::Overflow { what: "a diagonal of the lattice", found: far });

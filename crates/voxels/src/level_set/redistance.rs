@@ -28,7 +28,7 @@ options! {
         required {}
         optional {
             /// The value that parts inside and outside; auto for what the samples suggest.
-            iso: IsoValue [Bounds::FINITE] = IsoValue::Auto,
+            iso: IsoValue [IsoValue::BOUNDS] = IsoValue::Auto,
             /// On which side of the value the inside is.
             inside: InsideChoice = InsideChoice::Auto,
             /// Distances beyond this are cut to it, in model units; 0 for none that are cut.

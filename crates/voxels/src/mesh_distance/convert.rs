@@ -176,6 +176,13 @@ impl MeshToDistance {
         let near = parallel::map_chunks(exec, values.len(), 1 << 16, |range| {
             Ok::<_, ConvertError>(values[range].iter().filter(|value| value.abs() < FAR).count() as u64)
         })?;
+        let inside = parallel::map_chunks(exec, values.len(), 1 << 16, |range| {
+            Ok::<_, ConvertError>(values[range].iter().filter(|&&value| value < 0.0).count() as u64)
+        })?;
+        if !mesh.triangles().is_empty() && inside.iter().all(|&count| count == 0) {
+            let message = "no sample is inside: the mesh encloses nothing, or only what is thinner than a cell";
+            report.findings.push("W-voxel-nothing", Severity::Warning, Place::Whole, message);
+        }
         report.figure("band_samples", near.iter().sum::<u64>() as f64);
         report.figure("lost_cells", lost.cells as f64);
         if closed && held && !mesh.triangles().is_empty() {
@@ -191,6 +198,10 @@ pub(crate) fn corner_bounds(mesh: &TriMesh) -> shapeloom_core::Aabb {
         mesh.triangles().as_flattened().iter().map(|&vertex| mesh.positions()[vertex as usize]),
     )
 }
+
+/// The square of the distance, in cells, below which a sample counts as on the surface: rounding decides nothing there, so that a
+/// box whose faces lie on samples has no crumbs along its edges.
+const TOUCHING: f32 = 1e-18;
 
 /// Signed distances in cells, [`FAR`] beyond the band, and whether the mesh is closed.
 pub(crate) fn distances_in_cells(
@@ -239,14 +250,18 @@ pub(crate) fn distances_in_cells(
         for (row, values) in part.chunks_mut(columns as usize).enumerate() {
             let (j, k) = (row as u32 % rows, row as u32 / rows + first_slab);
             for (value, &squared) in values.iter_mut().zip(block.row(j, k)) {
-                *value = if squared < limit { squared.sqrt() } else { FAR };
+                *value = match squared {
+                    on_it if on_it < TOUCHING => 0.0,
+                    near if near < limit => near.sqrt(),
+                    _ => FAR,
+                };
             }
             if closed {
                 let mut winding = 0i32;
                 let changes = &changes[row * columns as usize..(row + 1) * columns as usize];
                 for (value, change) in values.iter_mut().zip(changes) {
                     winding += change;
-                    *value = if winding > 0 { -*value } else { *value };
+                    *value = if winding > 0 && *value > 0.0 { -*value } else { *value };
                 }
             }
         }

@@ -40,7 +40,9 @@ impl<'a> InCells<'a> {
         if positions.iter().any(is_far) {
             let named = mesh.triangles().as_flattened().iter().map(|&vertex| positions[vertex as usize]);
             if let Some(far) = named.into_iter().find(is_far) {
-                return Err(VoxelizeError::CellSize { found: cell_size, cells: far.abs().max_element() }.into());
+                let cells = far.abs().max_element();
+                let expected = "every vertex within some 1e14 cells of the lattice";
+                return Err(VoxelizeError::CellSize { found: cell_size, cells, expected }.into());
             }
         }
         Ok(Self { positions, triangles: mesh.triangles(), dimensions: lattice.dimensions(), _memory: memory })

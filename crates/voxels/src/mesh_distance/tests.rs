@@ -246,3 +246,18 @@ fn strange_sizes_and_places_are_taken_or_told() {
         assert!(truth > 3.0 || (found - truth).abs() < 1e-6, "{found} {truth}");
     }
 }
+
+/// Rounding must not put samples of the faces of a box inside: the surface would have crumbs along the edges.
+#[test]
+fn faces_on_samples_are_not_inside() {
+    for (low, high) in [(0.0, 1.0), (-0.5, 0.5), (0.1, 1.3)] {
+        let solid = block(DVec3::splat(low), DVec3::splat(high));
+        for resolution in [16, 50, 64, 90] {
+            let grid = with_resolution(resolution).convert(&solid).unwrap().value;
+            let inside = values(&grid).iter().filter(|&&value| value < 0.0).count();
+            assert_eq!(inside, (resolution as usize - 1).pow(3), "{low} {high} {resolution}");
+            let on_it = values(&grid).iter().filter(|&&value| value == 0.0).count();
+            assert_eq!(on_it, 6 * (resolution as usize).pow(2) + 2, "{low} {high} {resolution}");
+        }
+    }
+}
