@@ -42,8 +42,7 @@ pub(crate) fn read_stack(input: &[u8], context: &ReadContext, planes: Planes) ->
         let wrong =
             |found: String| Fault::new("E-volume-stack", Place::Whole, found, "slices beside each other, one a number");
         let mut at = name.number;
-        loop {
-            let Some(following) = at.checked_add(1) else { break };
+        while let Some(following) = at.checked_add(1) {
             at = following;
             let next = name.with(at);
             let sibling = SiblingName::try_new(&next).map_err(|_| wrong(quoted(next.as_bytes())))?;
