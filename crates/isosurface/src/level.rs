@@ -146,7 +146,7 @@ impl Level {
                 self.iso,
                 100.0 * (1.0 - otsu.separability)
             );
-            report.findings.push("W-iso-otsu", Severity::Note, Place::Whole, message);
+            report.findings.push("W-iso-otsu", Severity::Warning, Place::Whole, message);
         }
         if not_finite > 0 {
             let message = "samples that are NaN or infinite count as outside";
