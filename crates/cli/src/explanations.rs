@@ -209,16 +209,12 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-usage-threads", "That many threads could not be started."),
     (
-        "E-voxel-cell-size",
+        "E-voxels-cells",
         "With this cell size distances or volumes leave single precision, or the lattice has too many samples, or they would fall on each other far from the origin: the message says which. Choose another cell size, resolution, margin or radius, or scale or move the shape.",
     ),
     (
-        "E-voxel-lattice",
+        "E-voxels-cubes",
         "Voxels are made on lattices of cubes along the axes only: the three steps between samples must be equally long, along x, y and z.",
-    ),
-    (
-        "E-voxel-position",
-        "A vertex or point has a coordinate that is NaN or infinite, so it is in no cell. Take it out, or look where it comes from.",
     ),
     (
         "E-voxels-finite",
@@ -231,6 +227,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-voxels-overflow",
         "A length, offset, radius or fraction is outside of what the operation can hold in single precision. Scale the shape to a size near 1.",
+    ),
+    (
+        "E-voxels-position",
+        "A vertex or point has a coordinate that is NaN or infinite, so it is in no cell. Take it out, or look where it comes from.",
     ),
     (
         "E-voxels-size",
@@ -434,15 +434,15 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "Edges of the result have more than two triangles, because two pieces of the surface pass through one cell and share its vertex. The method manifold-surface-nets gives each piece a vertex of its own.",
     ),
     (
-        "W-voxel-lost",
+        "W-voxels-lost",
         "Parts of the mesh are thinner than a cell, so no sample lies in them, or their faces look inward: the surface that the samples describe leaves them out. Choose smaller cells, or turn the faces.",
     ),
     (
-        "W-voxel-nothing",
+        "W-voxels-nothing",
         "A mesh was sampled, but no sample is inside: it has no volume, is not closed, looks inward or is thinner than a cell. A higher resolution may help; a surface that encloses nothing has no inside.",
     ),
     (
-        "W-voxel-open",
+        "W-voxels-open",
         "The mesh is not closed, so inside and outside are not given by it alone. Inside is where the generalised winding number is above 1/2, which closes holes smoothly; there the deviation is not known.",
     ),
 ];

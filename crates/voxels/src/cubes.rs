@@ -3,8 +3,30 @@
 use shapeloom_core::Aabb;
 use shapeloom_core::glam::DVec3;
 use shapeloom_isosurface::Lattice;
+use shapeloom_mesh::TriMesh;
 
-use crate::VoxelizeError;
+use crate::VoxelError;
+
+/// The lattice of cubes around the triangles of a mesh, and the size of the cubes: as [`around`] their corners. Vertices that no
+/// triangle names have no surface.
+pub(crate) fn around_mesh(
+    mesh: &TriMesh,
+    cell_size: f64,
+    resolution: u32,
+    margin: u32,
+) -> Result<(Lattice, f64), VoxelError> {
+    check_positions(mesh)?;
+    let corners = mesh.triangles().as_flattened().iter().map(|&vertex| mesh.positions()[vertex as usize]);
+    around(&Aabb::from_points(corners), cell_size, resolution, margin)
+}
+
+/// Refuses positions that are not finite.
+pub(crate) fn check_positions(mesh: &TriMesh) -> Result<(), VoxelError> {
+    match mesh.first_non_finite() {
+        Some(vertex) => Err(VoxelError::Position { element: vertex as u64 }),
+        None => Ok(()),
+    }
+}
 
 /// The lattice of cubes around a box, and the size of the cubes.
 ///
@@ -15,7 +37,7 @@ pub(crate) fn around(
     cell_size: f64,
     resolution: u32,
     margin: u32,
-) -> Result<(Lattice, f64), VoxelizeError> {
+) -> Result<(Lattice, f64), VoxelError> {
     let (center, size) =
         if bounds.is_empty() { (DVec3::ZERO, DVec3::ZERO) } else { (bounds.center(), bounds.max - bounds.min) };
     let longest = size.max_element();
@@ -24,7 +46,7 @@ pub(crate) fn around(
         0.0 => 1.0,
         given => given,
     };
-    let wrong = |expected| VoxelizeError::CellSize { found: cell, cells: longest / cell, expected };
+    let wrong = |expected| VoxelError::CellSize { found: cell, cells: longest / cell, expected };
     if !(1e-30..=1e30).contains(&cell) || longest / cell > 1e9 {
         return Err(wrong("a size from 1e-30 to 1e30 and at most 1e9 cells along the shape"));
     }
@@ -44,15 +66,15 @@ pub(crate) fn around(
 }
 
 /// The size of a lattice's cells, which must be cubes along the axes.
-pub(crate) fn cell_size_of(lattice: &Lattice) -> Result<f64, VoxelizeError> {
+pub(crate) fn cell_size_of(lattice: &Lattice) -> Result<f64, VoxelError> {
     let [x, y, z] = lattice.steps();
     let size = x.x;
     let cubes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * size) == [x, y, z];
     if !cubes {
-        return Err(VoxelizeError::Lattice);
+        return Err(VoxelError::NotCubes);
     }
     if !(1e-30..=1e30).contains(&size) {
-        return Err(VoxelizeError::CellSize {
+        return Err(VoxelError::CellSize {
             found: size,
             cells: f64::from(lattice.dimensions().into_iter().max().unwrap_or(0)),
             expected: "a size from 1e-30 to 1e30",

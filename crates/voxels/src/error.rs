@@ -4,9 +4,25 @@ use std::fmt;
 
 use shapeloom_core::{Category, Diagnostic};
 
-/// Why a grid, an octree or bricks cannot be used.
+/// Why a grid, an octree or bricks cannot be made or used.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VoxelError {
+    /// A position that is not finite.
+    Position {
+        /// Which vertex or point.
+        element: u64,
+    },
+    /// A cell size with which distances leave single precision, or samples have no places of their own.
+    CellSize {
+        /// The cell size.
+        found: f64,
+        /// How many cells the longest side of the shape's box has with it.
+        cells: f64,
+        /// What is expected of cells.
+        expected: &'static str,
+    },
+    /// A lattice that is not one of cubes along the axes.
+    NotCubes,
     /// More samples in a direction than the structure can address.
     TooLarge {
         /// The structure.
@@ -69,6 +85,11 @@ pub enum VoxelError {
 impl fmt::Display for VoxelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Position { element } => write!(f, "position {element} is not finite, expected numbers"),
+            Self::CellSize { found, cells, expected } => {
+                write!(f, "found a cell size of {found:e} for {cells:.4e} cells, expected {expected}")
+            }
+            Self::NotCubes => f.write_str("found a lattice with other steps, expected cubes along the axes"),
             Self::TooLarge { structure, dimensions: [x, y, z], most } => {
                 write!(f, "{structure}: found {x} x {y} x {z} samples, expected at most {most} in a direction")
             }
@@ -102,6 +123,9 @@ impl std::error::Error for VoxelError {}
 impl Diagnostic for VoxelError {
     fn code(&self) -> &'static str {
         match self {
+            Self::Position { .. } => "E-voxels-position",
+            Self::CellSize { .. } => "E-voxels-cells",
+            Self::NotCubes => "E-voxels-cubes",
             Self::TooLarge { .. } => "E-voxels-size",
             Self::Lattices { .. } => "E-voxels-lattices",
             Self::NotFinite { .. } => "E-voxels-finite",
@@ -116,8 +140,8 @@ impl Diagnostic for VoxelError {
 
     fn category(&self) -> Category {
         match self {
-            Self::TooLarge { .. } | Self::Steps { .. } => Category::OverLimit,
-            Self::Lattices { .. } | Self::Overflow { .. } => Category::Usage,
+            Self::TooLarge { .. } | Self::Steps { .. } | Self::CellSize { .. } => Category::OverLimit,
+            Self::Lattices { .. } | Self::Overflow { .. } | Self::NotCubes => Category::Usage,
             Self::Thin { .. } => Category::Unsupported,
             _ => Category::Malformed,
         }
@@ -125,6 +149,9 @@ impl Diagnostic for VoxelError {
 
     fn advice(&self) -> Option<String> {
         match self {
+            Self::CellSize { .. } => {
+                Some("choose another cell size, resolution, margin or radius, or scale or move the shape".into())
+            }
             Self::Lattices { .. } => Some("sample both on one lattice".into()),
             Self::Steps { .. } => Some("ask for less time, or a coarser grid".into()),
             _ => None,

@@ -18,7 +18,6 @@ mod samples;
 mod sparse_bricks;
 mod voxel_grid;
 mod voxelize;
-mod voxelize_error;
 
 pub use cell_faces::CellFaces;
 pub use error::VoxelError;
@@ -35,4 +34,3 @@ pub use shapeloom_isosurface as isosurface;
 pub use sparse_bricks::SparseBricks;
 pub use voxel_grid::{Quantity, SampleRange, VoxelGrid};
 pub use voxelize::{CellRule, VoxelizeMesh, VoxelizeMode};
-pub use voxelize_error::VoxelizeError;

@@ -10,7 +10,7 @@ use shapeloom_core::{
 use shapeloom_isosurface::Lattice;
 use shapeloom_mesh::PointCloud;
 
-use crate::{Quantity, Samples, VoxelGrid, VoxelizeError, cubes};
+use crate::{Quantity, Samples, VoxelError, VoxelGrid, cubes};
 
 choice! {
     /// What samples say of the points around them.
@@ -81,9 +81,9 @@ impl Convert<PointCloud> for PointsToGrid {
     }
 }
 
-fn check(cloud: &PointCloud) -> Result<(), VoxelizeError> {
+fn check(cloud: &PointCloud) -> Result<(), VoxelError> {
     match cloud.positions().iter().position(|position| !position.is_finite()) {
-        Some(point) => Err(VoxelizeError::Position { element: point as u64 }),
+        Some(point) => Err(VoxelError::Position { element: point as u64 }),
         None => Ok(()),
     }
 }
@@ -114,7 +114,7 @@ impl PointsToGrid {
         if self.weight == PointWeight::Kernel && !(1e-12..=1e12).contains(&cell_size) {
             let cells = lattice.dimensions().into_iter().max().unwrap_or(0);
             let expected = "a size from 1e-12 to 1e12 for densities";
-            return Err(VoxelizeError::CellSize { found: cell_size, cells: f64::from(cells), expected }.into());
+            return Err(VoxelError::CellSize { found: cell_size, cells: f64::from(cells), expected }.into());
         }
         let names = cloud.attributes().iter().map(|column| format!("vertex attribute \"{}\"", column.name()));
         let lists = cloud.attributes().lists().iter().map(|list| format!("vertex list \"{}\"", list.name()));

@@ -7,6 +7,7 @@ use spade::Triangulation as _;
 use spade::handles::FixedVertexHandle;
 
 use super::error::PlaneError;
+use super::hull_border::ROUNDING;
 use super::location::locate;
 use super::scale::flushed;
 use super::triangulation::{Cdt, Mark, Triangulation, insert_near, position};
@@ -173,9 +174,6 @@ fn passes_within_rounding([p, q]: [DVec2; 2], end: DVec2, other: [DVec2; 2]) -> 
     let is_between = (end - p).dot(q - p) > 0.0 && (end - q).dot(p - q) > 0.0;
     is_between && off <= from.abs().max(to.abs()).max_element() * ROUNDING
 }
-
-/// A crossing is rounded by a few units in the last place of the coordinates of the shorter segment, 2^-53 of them; this is 64.
-const ROUNDING: f64 = 1.0 / (1u64 << 47) as f64;
 
 /// Writes a piece on a constraint edge, on top of what is there.
 fn claim(cdt: &mut Cdt, edge: spade::handles::FixedUndirectedEdgeHandle, piece: Piece, done: &mut Constraints) {

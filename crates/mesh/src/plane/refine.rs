@@ -10,9 +10,11 @@ use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
 use spade::{PositionInTriangulation, Triangulation as _};
 
 use super::error::PlaneError;
+use super::hull_border::{FINEST, border};
 use super::inside::{Edge, inside};
 use super::location::locate;
 use super::scale::{exponent_of, flushed};
+use super::triangle_shape::{Shape, circumcenter};
 use super::triangulation::{Cdt, Mark, Triangulation, insert_near, position};
 
 /// What is asked of the triangles.
@@ -557,52 +559,6 @@ impl<'a> Refinement<'a> {
     }
 }
 
-/// The edges around everything within the hull but flat triangles at it, and how many of these there are.
-///
-/// Points that were meant to lie on a straight border are off it by rounding. The hull then has triangles along it that are
-/// flat but for that rounding, and no vertices could make them better.
-fn border(cdt: &Cdt) -> (Vec<FixedUndirectedEdgeHandle>, u64) {
-    let is_flat = |edge: Edge<'_>| {
-        edge.opposite_vertex().is_some_and(|apex| {
-            let [p, q] = [edge.from(), edge.to()].map(|vertex| position(cdt, vertex.fix()));
-            let apex = position(cdt, apex.fix());
-            let length = p.distance(q);
-            let height = (q - p).perp_dot(apex - p) / length;
-            let reach = p.abs().max(q.abs()).max_element();
-            let between = (apex - p).dot(q - p) > 0.0 && (apex - q).dot(p - q) > 0.0;
-            between && height <= (FINEST * length).max(ROUNDING * reach)
-        })
-    };
-    let mut is_peeled = vec![false; cdt.num_all_faces()];
-    let (mut border, mut peeled) = (Vec::new(), 0);
-    let mut ahead: Vec<_> = cdt.convex_hull().map(|edge| edge.rev().fix()).collect();
-    while let Some(edge) = ahead.pop() {
-        let edge = cdt.directed_edge(edge);
-        let Some(face) = edge.face().as_inner() else { continue };
-        if is_peeled[face.index()] {
-            continue;
-        }
-        if !edge.is_constraint_edge() && is_flat(edge) {
-            is_peeled[face.index()] = true;
-            peeled += 1;
-            ahead.extend([edge.next().rev().fix(), edge.prev().rev().fix()]);
-        } else {
-            border.push(edge);
-        }
-    }
-    if peeled as usize == cdt.num_inner_faces() {
-        return (cdt.convex_hull().map(|edge| edge.as_undirected().fix()).collect(), 0);
-    }
-    border.retain(|edge| edge.face().as_inner().is_some_and(|face| !is_peeled[face.index()]));
-    (border.into_iter().map(|edge| edge.as_undirected().fix()).collect(), peeled)
-}
-
-/// What is off a line by this part of its coordinates, or less, is off by rounding.
-const ROUNDING: f64 = 1.0 / (1u64 << 47) as f64;
-
-/// Triangles whose shortest side is less than this part of the largest coordinate stay: their circumcentres would be noise.
-const FINEST: f64 = 1.0 / (1u64 << 40) as f64;
-
 /// The edge in the direction that rises from the vertex of smaller index.
 fn upward(edge: Edge<'_>) -> Edge<'_> {
     if edge.from().index() < edge.to().index() { edge } else { edge.rev() }
@@ -635,36 +591,3 @@ fn is_acute(cdt: &Cdt, vertex: FixedVertexHandle) -> bool {
             a.perp_dot(b) > 0.0 && a.dot(b) > 0.5 * a.length() * b.length()
         })
 }
-
-/// What decides about a triangle.
-pub(crate) struct Shape {
-    /// The square of the sine of the smallest angle.
-    pub(crate) sine_squared: f64,
-    /// The root of the area.
-    pub(crate) side: f64,
-    /// The corner from which the shortest side leads to the next.
-    shortest: usize,
-    shortest_squared: f64,
-}
-
-impl Shape {
-    pub(crate) fn of(corners: [DVec2; 3]) -> Self {
-        let squared = [0, 1, 2].map(|k: usize| corners[k].distance_squared(corners[(k + 1) % 3]));
-        let shortest = (0..3).min_by(|&a, &b| squared[a].total_cmp(&squared[b])).unwrap_or(0);
-        let twice = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
-        let others = squared[(shortest + 1) % 3] * squared[(shortest + 2) % 3];
-        let sine_squared = if others > 0.0 { (twice * twice / others).min(0.75) } else { 0.0 };
-        Self { sine_squared, side: (0.5 * twice.abs()).sqrt(), shortest, shortest_squared: squared[shortest] }
-    }
-}
-
-fn circumcenter([a, b, c]: [DVec2; 3]) -> Option<DVec2> {
-    let (b, c) = (b - a, c - a);
-    let twice = 2.0 * b.perp_dot(c);
-    let (bb, cc) = (b.length_squared(), c.length_squared());
-    let center = a + DVec2::new(c.y * bb - b.y * cc, b.x * cc - c.x * bb) / twice;
-    (center.is_finite() && center.abs().max_element() < FARTHEST).then_some(flushed(center))
-}
-
-/// Coordinates that the triangulation takes; its own come to lie far below.
-const FARTHEST: f64 = f64::from_bits((1023 + 200) << 52);

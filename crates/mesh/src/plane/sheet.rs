@@ -10,7 +10,8 @@ use super::error::PlaneError;
 use super::inside::inside;
 use super::mixtures::{self, Mixture};
 use super::projection::Projection;
-use super::refine::{BOX, Reached, Refinement, Shape, Wanted};
+use super::refine::{BOX, Reached, Refinement, Wanted};
+use super::triangle_shape::Shape;
 use super::triangulation::{Cdt, Triangulation, position};
 use crate::{Attributes, MeshAttributes, MeshError, MeshOrigins, Origins, TriMesh, carry};
 

@@ -18,7 +18,7 @@ use super::steepness::Steepness;
 use super::thin;
 use crate::cubes;
 use crate::losses::of_mesh;
-use crate::{Quantity, Samples, VoxelGrid, VoxelizeError};
+use crate::{Quantity, Samples, VoxelGrid};
 
 choice! {
     /// What samples hold that are farther from the surface than the band.
@@ -78,11 +78,7 @@ impl Convert<TriMesh> for MeshToDistance {
 
     fn convert_with(&self, source: &TriMesh, exec: &Exec) -> Result<Converted<VoxelGrid>, ConvertError> {
         self.validate()?;
-        if let Some(vertex) = source.first_non_finite() {
-            return Err(VoxelizeError::Position { element: vertex as u64 }.into());
-        }
-        let bounds = corner_bounds(source);
-        let (lattice, _) = cubes::around(&bounds, self.cell_size, self.resolution, self.margin)?;
+        let (lattice, _) = cubes::around_mesh(source, self.cell_size, self.resolution, self.margin)?;
         self.onto(source, lattice, exec)
     }
 }
@@ -95,9 +91,7 @@ impl MeshToDistance {
     /// Another lattice, or whatever conversion gives.
     pub fn onto(&self, mesh: &TriMesh, lattice: Lattice, exec: &Exec) -> Result<Converted<VoxelGrid>, ConvertError> {
         self.validate()?;
-        if let Some(vertex) = mesh.first_non_finite() {
-            return Err(VoxelizeError::Position { element: vertex as u64 }.into());
-        }
+        cubes::check_positions(mesh)?;
         let cell_size = cubes::cell_size_of(&lattice)?;
         let _memory = exec.reserve_elements(lattice.samples(), size_of::<f32>())?;
         let (mut values, closed) = distances_in_cells(mesh, &lattice, cell_size, self.band, exec)?;
@@ -157,14 +151,14 @@ impl MeshToDistance {
         report.losses.extend(of_mesh(mesh, "a grid of distances has no attributes"));
         if !closed {
             let message = "the mesh is not closed: inside is where its winding number is above 1/2";
-            report.findings.push("W-voxel-open", Severity::Note, Place::Whole, message);
+            report.findings.push("W-voxels-open", Severity::Note, Place::Whole, message);
         }
         if closed && held && lost.cells > 0 {
             let at = lost.first.map_or(0, |cell| lattice.index(cell));
             let message = "cells that the mesh may pass have only samples of one side around them: what is thinner than a cell, \
                            or has faces that look inward, is lost";
             report.findings.push_many(
-                "W-voxel-lost",
+                "W-voxels-lost",
                 Severity::Warning,
                 Place::element("sample", at),
                 message,
@@ -181,7 +175,7 @@ impl MeshToDistance {
         })?;
         if !mesh.triangles().is_empty() && inside.iter().all(|&count| count == 0) {
             let message = "no sample is inside: the mesh encloses nothing, or only what is thinner than a cell";
-            report.findings.push("W-voxel-nothing", Severity::Warning, Place::Whole, message);
+            report.findings.push("W-voxels-nothing", Severity::Warning, Place::Whole, message);
         }
         report.figure("band_samples", near.iter().sum::<u64>() as f64);
         report.figure("lost_cells", lost.cells as f64);
@@ -190,13 +184,6 @@ impl MeshToDistance {
         }
         Ok(report)
     }
-}
-
-/// The box around the corners of triangles: vertices that no triangle names have no surface.
-pub(crate) fn corner_bounds(mesh: &TriMesh) -> shapeloom_core::Aabb {
-    shapeloom_core::Aabb::from_points(
-        mesh.triangles().as_flattened().iter().map(|&vertex| mesh.positions()[vertex as usize]),
-    )
 }
 
 /// The square of the distance, in cells, below which a sample counts as on the surface: rounding decides nothing there, so that a

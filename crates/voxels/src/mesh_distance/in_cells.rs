@@ -5,7 +5,7 @@ use shapeloom_core::{ConvertError, Exec, Reservation, parallel};
 use shapeloom_isosurface::Lattice;
 use shapeloom_mesh::TriMesh;
 
-use crate::VoxelizeError;
+use crate::VoxelError;
 
 /// A mesh in lattice coordinates: the step between samples is 1, and samples are at whole numbers.
 ///
@@ -42,7 +42,7 @@ impl<'a> InCells<'a> {
             if let Some(far) = named.into_iter().find(is_far) {
                 let cells = far.abs().max_element();
                 let expected = "every vertex within some 1e14 cells of the lattice";
-                return Err(VoxelizeError::CellSize { found: cell_size, cells, expected }.into());
+                return Err(VoxelError::CellSize { found: cell_size, cells, expected }.into());
             }
         }
         Ok(Self { positions, triangles: mesh.triangles(), dimensions: lattice.dimensions(), _memory: memory })

@@ -15,8 +15,8 @@ mod thin;
 mod tests;
 
 pub(crate) use bins::Bins;
+pub(crate) use convert::distances_in_cells;
 pub use convert::{FarField, MeshToDistance};
-pub(crate) use convert::{corner_bounds, distances_in_cells};
 pub(crate) use in_cells::InCells;
 pub(crate) use rows::{Rows, whole_numbers};
 pub(crate) use thin::lost_cells;

@@ -158,7 +158,7 @@ fn parts_thinner_than_a_cell_are_told() {
     let sheet = block(DVec3::new(-1.0, -1.0, 0.012), DVec3::new(1.0, 1.0, 0.02));
     let made = with_resolution(16).convert(&sheet).unwrap();
     assert_eq!(made.report.deviation, Deviation::Unknown);
-    assert!(made.report.findings.iter().any(|finding| finding.code == "W-voxel-lost"));
+    assert!(made.report.findings.iter().any(|finding| finding.code == "W-voxels-lost"));
     let made = with_resolution(16).convert(&together(&[block(DVec3::splat(-1.0), DVec3::splat(0.0)), sheet])).unwrap();
     assert_eq!(made.report.deviation, Deviation::Unknown);
     let made = with_resolution(16).convert(&icosahedron().reversed()).unwrap();
@@ -169,7 +169,7 @@ fn parts_thinner_than_a_cell_are_told() {
 fn open_meshes_are_told() {
     let made = with_resolution(16).convert(&some(&icosahedron(), |i| i > 0)).unwrap();
     assert_eq!(made.report.deviation, Deviation::Unknown);
-    assert!(made.report.findings.iter().any(|finding| finding.code == "W-voxel-open"));
+    assert!(made.report.findings.iter().any(|finding| finding.code == "W-voxels-open"));
 }
 
 #[test]

@@ -9,8 +9,8 @@ use shapeloom_mesh::TriMesh;
 
 use super::cells::Cells;
 use crate::losses::of_mesh;
-use crate::mesh_distance::{Bins, InCells, corner_bounds, distances_in_cells, lost_cells};
-use crate::{Quantity, Samples, VoxelGrid, VoxelizeError, cubes};
+use crate::mesh_distance::{Bins, InCells, distances_in_cells, lost_cells};
+use crate::{Quantity, Samples, VoxelGrid, cubes};
 
 choice! {
     /// What of a mesh is made of voxels.
@@ -79,11 +79,7 @@ impl Convert<TriMesh> for VoxelizeMesh {
 
     fn convert_with(&self, source: &TriMesh, exec: &Exec) -> Result<Converted<VoxelGrid>, ConvertError> {
         self.validate()?;
-        if let Some(vertex) = source.first_non_finite() {
-            return Err(VoxelizeError::Position { element: vertex as u64 }.into());
-        }
-        let bounds = corner_bounds(source);
-        let (lattice, _) = cubes::around(&bounds, self.cell_size, self.resolution, self.margin)?;
+        let (lattice, _) = cubes::around_mesh(source, self.cell_size, self.resolution, self.margin)?;
         self.onto(source, lattice, exec)
     }
 }
@@ -95,9 +91,7 @@ impl VoxelizeMesh {
     /// Another lattice, or whatever conversion gives.
     pub fn onto(&self, mesh: &TriMesh, lattice: Lattice, exec: &Exec) -> Result<Converted<VoxelGrid>, ConvertError> {
         self.validate()?;
-        if let Some(vertex) = mesh.first_non_finite() {
-            return Err(VoxelizeError::Position { element: vertex as u64 }.into());
-        }
+        cubes::check_positions(mesh)?;
         let cell_size = cubes::cell_size_of(&lattice)?;
         let words = lattice.samples().div_ceil(64);
         let _memory = exec.reserve_elements(words, 3 * size_of::<u64>())?;
@@ -164,7 +158,7 @@ impl VoxelizeMesh {
         report.losses.extend(of_mesh(mesh, "a grid of cells has no attributes"));
         if closed == Some(false) {
             let message = "the mesh is not closed: inside is where its winding number is above 1/2";
-            report.findings.push("W-voxel-open", Severity::Note, Place::Whole, message);
+            report.findings.push("W-voxels-open", Severity::Note, Place::Whole, message);
         }
         let full: u64 = bits.iter().map(|word| u64::from(word.count_ones())).sum();
         report.figure("cell_size", lattice.spacing().x);
