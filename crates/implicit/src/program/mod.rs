@@ -1,0 +1,88 @@
+//! Compiled fields: what evaluators run.
+
+mod batch;
+pub(crate) mod builder;
+mod compile;
+mod field;
+mod interval;
+mod point;
+mod registers;
+mod restrict;
+mod step;
+
+use std::fmt;
+use std::sync::Arc;
+
+pub use batch::BatchEvaluator;
+pub use compile::{CompileError, ParameterError};
+pub use interval::{IntervalEvaluator, Trace};
+pub use point::PointEvaluator;
+
+use crate::tree::Nature;
+use registers::Tape;
+use step::{Call, Step};
+
+/// The result of a step, by the step's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) struct Value(pub(crate) u32);
+
+impl Value {
+    pub(crate) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A compiled field: a straight line of steps over numbers, ready to be evaluated by any number of threads at once.
+///
+/// Cheap to clone. Evaluators hold the memory that a run needs: one for each thread, reused from call to call. As a
+/// [`Field`](shapeloom_core::Field) it keeps them itself.
+#[derive(Clone)]
+pub struct Program(Arc<Parts>);
+
+struct Parts {
+    steps: Vec<Step>,
+    calls: Vec<Call>,
+    result: Value,
+    tape: Tape,
+    choices: usize,
+    nature: Nature,
+}
+
+impl Program {
+    fn new(steps: Vec<Step>, calls: Vec<Call>, result: Value, nature: Nature) -> Self {
+        let tape = Tape::new(&steps, result);
+        let choices = steps.iter().filter(|step| interval::chooses(step)).count();
+        Self(Arc::new(Parts { steps, calls, result, tape, choices, nature }))
+    }
+
+    /// How many steps there are.
+    pub fn len(&self) -> usize {
+        self.0.steps.len()
+    }
+
+    /// Whether there is no step. Never so.
+    pub fn is_empty(&self) -> bool {
+        self.0.steps.is_empty()
+    }
+
+    /// How many numbers of a point must be kept at once while batches are evaluated.
+    pub fn register_count(&self) -> usize {
+        self.0.tape.registers
+    }
+
+    /// How many of the steps choose one of their operands: minima, maxima and logical operators.
+    pub fn choice_count(&self) -> usize {
+        self.0.choices
+    }
+
+    /// What is known of the values.
+    pub fn nature(&self) -> Nature {
+        self.0.nature
+    }
+}
+
+impl fmt::Debug for Program {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Program({} steps, {} registers)", self.len(), self.register_count())
+    }
+}
