@@ -14,7 +14,7 @@ use crate::shapes::{SetOperation, stretches};
 use crate::tree::{Operation, Tree};
 
 /// The most steps that a program may have. A tree with shared parts in bent space may stand for very many more than it has nodes.
-pub(crate) const MOST_STEPS: usize = 1 << 24;
+pub(crate) const MOST_STEPS: usize = 1 << 21;
 
 /// Why a tree makes no program.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +84,7 @@ impl Tree {
     /// coordinates. Takes time and memory in proportion to the steps, and no stack.
     ///
     /// # Errors
-    /// A parameter outside its range, a union of nothing, or more than 2²⁴ steps.
+    /// A parameter outside its range, a union of nothing, or more than 2²¹ steps.
     pub fn compile(&self) -> Result<Program, CompileError> {
         self.check()?;
         let mut lowering = Lowering { builder: Builder::default(), done: HashMap::new() };
