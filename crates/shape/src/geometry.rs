@@ -4,6 +4,7 @@ use std::fmt;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Affine, Category, Diagnostic};
+use shapeloom_implicit::Implicit;
 use shapeloom_mesh::{GeometricGraph, HeightField, PointCloud, PolyMesh, Polyline, TriMesh};
 use shapeloom_parametric::{BezierCurve, BezierSurface};
 use shapeloom_voxels::VoxelGrid;
@@ -26,6 +27,8 @@ pub enum Geometry {
     GeometricGraph(GeometricGraph),
     /// Heights over a grid.
     HeightField(HeightField),
+    /// The zero set of a field.
+    Implicit(Implicit),
     /// Samples on a lattice.
     VoxelGrid(VoxelGrid),
     /// Indexed polygons.
@@ -44,6 +47,7 @@ impl Geometry {
             Self::Polyline(_) => Kind::Polyline,
             Self::GeometricGraph(_) => Kind::GeometricGraph,
             Self::HeightField(_) => Kind::HeightField,
+            Self::Implicit(_) => Kind::Implicit,
             Self::VoxelGrid(_) => Kind::VoxelGrid,
             Self::PolyMesh(_) => Kind::PolyMesh,
             Self::TriMesh(_) => Kind::TriMesh,
@@ -59,6 +63,7 @@ impl Geometry {
             Self::Polyline(line) => line.bounds(),
             Self::GeometricGraph(graph) => graph.bounds(),
             Self::HeightField(field) => field.bounds(),
+            Self::Implicit(implicit) => implicit.bounds(),
             Self::VoxelGrid(grid) => grid.bounds(),
             Self::PolyMesh(mesh) => mesh.bounds(),
             Self::TriMesh(mesh) => mesh.bounds(),
@@ -75,6 +80,7 @@ impl Geometry {
             Self::Polyline(line) => Self::Polyline(line.transformed(map)),
             Self::GeometricGraph(graph) => Self::GeometricGraph(graph.transformed(map)),
             Self::HeightField(field) => Self::HeightField(field.transformed(map)),
+            Self::Implicit(implicit) => Self::Implicit(implicit.transformed(map)),
             Self::VoxelGrid(grid) => Self::VoxelGrid(grid.transformed(map)),
             Self::PolyMesh(mesh) => Self::PolyMesh(mesh.transformed(map)),
             Self::TriMesh(mesh) => Self::TriMesh(mesh.transformed(map)),
@@ -90,6 +96,7 @@ impl Geometry {
             Self::Polyline(line) => line.memory_bytes(),
             Self::GeometricGraph(graph) => graph.memory_bytes(),
             Self::HeightField(field) => field.memory_bytes(),
+            Self::Implicit(implicit) => implicit.memory_bytes(),
             Self::VoxelGrid(grid) => grid.memory_bytes(),
             Self::PolyMesh(mesh) => mesh.memory_bytes(),
             Self::TriMesh(mesh) => mesh.memory_bytes(),
@@ -164,6 +171,7 @@ holds!(
     Polyline(Polyline),
     GeometricGraph(GeometricGraph),
     HeightField(HeightField),
+    Implicit(Implicit),
     VoxelGrid(VoxelGrid),
     PolyMesh(PolyMesh),
     TriMesh(TriMesh),

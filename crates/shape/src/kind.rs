@@ -35,6 +35,8 @@ pub enum Kind {
     GeometricGraph,
     /// Heights over a grid.
     HeightField,
+    /// The zero set of a field.
+    Implicit,
     /// Samples on a lattice.
     VoxelGrid,
     /// Indexed polygons.
@@ -45,13 +47,14 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind, in the order of the families.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::PointCloud,
         Self::BezierCurve,
         Self::BezierSurface,
         Self::Polyline,
         Self::GeometricGraph,
         Self::HeightField,
+        Self::Implicit,
         Self::VoxelGrid,
         Self::PolyMesh,
         Self::TriMesh,
@@ -66,6 +69,7 @@ impl Kind {
             Self::Polyline => "polyline",
             Self::GeometricGraph => "geometric-graph",
             Self::HeightField => "height-field",
+            Self::Implicit => "implicit",
             Self::VoxelGrid => "voxel-grid",
             Self::PolyMesh => "poly-mesh",
             Self::TriMesh => "tri-mesh",
@@ -82,6 +86,7 @@ impl Kind {
         match self {
             Self::PointCloud => Family::Points,
             Self::BezierCurve | Self::BezierSurface => Family::Parametric,
+            Self::Implicit => Family::Implicits,
             Self::VoxelGrid => Family::Voxels,
             Self::Polyline | Self::GeometricGraph | Self::HeightField | Self::PolyMesh | Self::TriMesh => {
                 Family::Meshes

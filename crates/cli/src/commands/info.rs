@@ -203,6 +203,13 @@ impl Totals {
                     object.insert("highest".into(), account::number(high));
                 }
             }
+            Geometry::Implicit(implicit) => {
+                self.count(&mut object, "nodes", implicit.tree().node_count());
+                self.count(&mut object, "steps", implicit.program().len());
+                object.insert("values".into(), json!(implicit.nature().meaning().name()));
+                let lipschitz = implicit.nature().lipschitz.map_or(Value::Null, account::number);
+                object.insert("lipschitz".into(), lipschitz);
+            }
             Geometry::VoxelGrid(grid) => {
                 self.count(&mut object, "samples", grid.lattice().samples() as usize);
                 object.insert("dimensions".into(), json!(grid.lattice().dimensions()));
