@@ -26,6 +26,13 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-check-kind", "The file holds nothing with a surface that could be checked: points, lines, or nothing at all."),
     ("E-compare-count", "A shape has more vertices than 32-bit ids can tell apart."),
     ("E-compare-empty", "A file holds nothing that has a distance: no surface, lines or points."),
+    ("E-curve-empty", "A generalised cylinder needs at least one curve."),
+    ("E-curve-piece", "A curve of a generalised cylinder has no control points, or one that is not finite."),
+    ("E-curve-radius", "The radius of a generalised cylinder must be a finite number, at least 0."),
+    (
+        "E-curve-tolerance",
+        "The tolerance with which the curves of a generalised cylinder are flattened must be above 0, and not so small that more than four million segments are needed.",
+    ),
     ("E-distance-empty", "A shape without triangles, segments or points has no distance from anything."),
     (
         "E-distance-sample",
@@ -60,6 +67,19 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-edit-valence", "The vertex has too few edges to be removed: no face would be left."),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
+    (
+        "E-implicit-bounds",
+        "The box in which the shape is looked at is empty, flat or not finite. Give two corners with finite coordinates, the second larger along each axis.",
+    ),
+    ("E-implicit-empty", "A union, intersection or difference has no parts. Give it at least one."),
+    (
+        "E-implicit-parameter",
+        "A number of an implicit shape is outside its range: a radius of 0 or below, an alpha of an R-function outside (-1, 1], a map that flattens space. The message names the operation, the parameter and the part. Correct the number.",
+    ),
+    (
+        "E-implicit-steps",
+        "The shape, with its shared parts written out at each of their places, takes more than two million steps. Parts that are shared inside bent space multiply: use fewer levels, or a repeat instead of copies of copies.",
+    ),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
     (
         "E-judge-finite",

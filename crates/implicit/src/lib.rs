@@ -4,6 +4,7 @@
 //! [`Program`] of it, which evaluators run: [`PointEvaluator`] in double precision with derivatives, [`BatchEvaluator`] for many points in
 //! single precision, [`IntervalEvaluator`] for proven bounds over boxes. A program is a [`Field`](shapeloom_core::Field) too.
 
+mod curve_distance;
 mod implicit;
 #[cfg(test)]
 mod laws;
@@ -13,6 +14,7 @@ mod program;
 mod shapes;
 mod tree;
 
+pub use curve_distance::{CurveDistance, CurveError};
 pub use implicit::{BoundsError, Implicit};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
