@@ -38,6 +38,7 @@ mod faces;
 mod format;
 mod gltf;
 mod heights;
+mod implicit_text;
 mod memory;
 mod metaimage;
 mod nrrd;

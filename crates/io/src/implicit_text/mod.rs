@@ -1,0 +1,2 @@
+//! Implicit shapes in text.
+mod foreign;
