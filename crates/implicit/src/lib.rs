@@ -12,6 +12,7 @@ mod operator;
 mod power;
 mod program;
 mod shapes;
+mod text;
 mod tree;
 
 pub use curve_distance::{CurveDistance, CurveError};
@@ -19,4 +20,8 @@ pub use implicit::{BoundsError, Implicit};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
 pub use shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
+pub use text::{
+    ForeignCall, Parsed, ResolveError, Resolved, Resolver, TextError, TextProblem, VmError, VmProblem, VmWriteError,
+    parse, parse_vm, print_vm, to_text,
+};
 pub use tree::{Axis, Foreign, Meaning, Nature, Operation, Tree, post_order};

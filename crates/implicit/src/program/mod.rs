@@ -20,7 +20,8 @@ pub use point::PointEvaluator;
 
 use crate::tree::Nature;
 use registers::Tape;
-use step::{Call, Step};
+use step::Call;
+pub(crate) use step::{Linear, Step};
 
 /// The result of a step, by the step's number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -53,6 +54,11 @@ impl Program {
         let tape = Tape::new(&steps, result);
         let choices = steps.iter().filter(|step| interval::chooses(step)).count();
         Self(Arc::new(Parts { steps, calls, result, tape, choices, nature }))
+    }
+
+    /// The steps, and which of them is the result.
+    pub(crate) fn steps(&self) -> (&[Step], Value) {
+        (&self.0.steps, self.0.result)
     }
 
     /// How many steps there are.
