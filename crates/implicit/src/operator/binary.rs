@@ -1,5 +1,6 @@
 //! Operators of two operands.
 
+use super::enclosure::least;
 use super::unary::LIBRARY;
 use super::{Dual, Enclosure};
 
@@ -176,6 +177,7 @@ impl Binary {
     }
 
     /// Bounds of the result over two intervals, and for the operators that choose an operand, which.
+    #[inline]
     pub fn of_enclosures(self, a: Enclosure, b: Enclosure) -> (Enclosure, Choice) {
         let result = match self {
             Self::Add => a.plus(b),
@@ -225,8 +227,20 @@ pub enum Choice {
     Both,
 }
 
+#[inline(always)]
 fn minimum(a: Enclosure, b: Enclosure) -> (Enclosure, Choice) {
-    let mut result = Enclosure { lo: a.lo.min(b.lo), hi: a.hi.min(b.hi), undefined: a.undefined && b.undefined };
+    let (lo, hi) = (least(a.lo, b.lo), least(a.hi, b.hi));
+    if !a.undefined && !b.undefined {
+        let choice = if a.hi < b.lo {
+            Choice::Left
+        } else if b.hi < a.lo {
+            Choice::Right
+        } else {
+            Choice::Both
+        };
+        return (Enclosure { lo, hi, undefined: false }, choice);
+    }
+    let mut result = Enclosure { lo, hi, undefined: a.undefined && b.undefined };
     // Where one is not a number the other one counts.
     if a.undefined {
         result.hi = result.hi.max(b.hi);
@@ -234,16 +248,7 @@ fn minimum(a: Enclosure, b: Enclosure) -> (Enclosure, Choice) {
     if b.undefined {
         result.hi = result.hi.max(a.hi);
     }
-    let choice = if a.undefined || b.undefined {
-        Choice::Both
-    } else if a.hi < b.lo {
-        Choice::Left
-    } else if b.hi < a.lo {
-        Choice::Right
-    } else {
-        Choice::Both
-    };
-    (result, choice)
+    (result, Choice::Both)
 }
 
 /// `zero` is chosen where `a` is 0, `other` elsewhere.

@@ -17,6 +17,24 @@ pub struct Enclosure {
     pub undefined: bool,
 }
 
+/// How far an end moves outward.
+#[inline(always)]
+fn room(end: f64) -> f64 {
+    end.abs() * f64::EPSILON + f64::MIN_POSITIVE
+}
+
+/// The smaller of two ends, neither of which is not a number: the library's takes care of those, which costs more.
+#[inline(always)]
+pub(super) fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two ends.
+#[inline(always)]
+pub(super) fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 impl Enclosure {
     /// Nothing is known.
     pub const UNKNOWN: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY, undefined: true };
@@ -46,16 +64,30 @@ impl Enclosure {
         self
     }
 
-    /// The ends of an operation's result, rounded outward by one unit in the last place.
+    /// The ends of an operation's result, rounded outward by one or two units in the last place.
+    ///
+    /// An end v moves by e = |v| · 2⁻⁵² + the least normal number. That is at least the distance from v to its neighbour: for normal v
+    /// the first part alone is, and it loses nothing to rounding unless it is subnormal itself, where the second part is more. So the exact
+    /// v ± e lies at the neighbour or beyond, and rounding, which is monotone, does not bring it back. An end that is not
+    /// finite and faces inward gives not a number, hence nothing known.
+    #[inline(always)]
     fn outward(lo: f64, hi: f64) -> Self {
+        let (lo, hi) = (lo - room(lo), hi + room(hi));
         if lo.is_nan() || hi.is_nan() {
             return Self::UNKNOWN;
         }
-        Self { lo: lo.next_down(), hi: hi.next_up(), undefined: false }
+        Self { lo, hi, undefined: false }
     }
 
+    /// Whether both ends of both are finite. Said of fewer where the lengths overflow.
+    #[inline(always)]
+    fn both_finite(self, other: Self) -> bool {
+        (self.hi - self.lo) + (other.hi - other.lo) < f64::INFINITY
+    }
+
+    #[inline(always)]
     pub(super) fn at_least(mut self, bound: f64) -> Self {
-        self.lo = self.lo.max(bound);
+        self.lo = most(self.lo, bound);
         self
     }
 
@@ -85,10 +117,12 @@ impl Enclosure {
         result.or_undefined(self.undefined)
     }
 
+    #[inline(always)]
     pub(super) fn negate(self) -> Self {
         Self { lo: -self.hi, hi: -self.lo, undefined: self.undefined }
     }
 
+    #[inline(always)]
     pub(super) fn absolute(self) -> Self {
         if self.lo >= 0.0 {
             self
@@ -99,6 +133,7 @@ impl Enclosure {
         }
     }
 
+    #[inline(always)]
     pub(super) fn square(self) -> Self {
         let size = self.absolute();
         Self::outward(size.lo * size.lo, size.hi * size.hi).at_least(0.0).or_undefined(self.undefined)
@@ -126,32 +161,38 @@ impl Enclosure {
         if even { result.at_least(0.0) } else { result }
     }
 
+    #[inline(always)]
     pub(super) fn plus(self, other: Self) -> Self {
         let undefined = self.undefined
             || other.undefined
-            || (self.hi == f64::INFINITY && other.lo == f64::NEG_INFINITY)
-            || (self.lo == f64::NEG_INFINITY && other.hi == f64::INFINITY);
+            || (!self.both_finite(other)
+                && ((self.hi == f64::INFINITY && other.lo == f64::NEG_INFINITY)
+                    || (self.lo == f64::NEG_INFINITY && other.hi == f64::INFINITY)));
         Self::outward(self.lo + other.lo, self.hi + other.hi).or_undefined(undefined)
     }
 
+    #[inline(always)]
     pub(super) fn times(self, other: Self) -> Self {
+        if !self.both_finite(other) {
+            return self.times_any(other);
+        }
+        let (a, b) = (self.lo * other.lo, self.lo * other.hi);
+        let (c, d) = (self.hi * other.lo, self.hi * other.hi);
+        Self::outward(least(least(a, b), least(c, d)), most(most(a, b), most(c, d)))
+            .or_undefined(self.undefined || other.undefined)
+    }
+
+    fn times_any(self, other: Self) -> Self {
         let holds_zero = |a: Self| a.lo <= 0.0 && a.hi >= 0.0;
-        let infinite = |a: Self| a.lo == f64::NEG_INFINITY || a.hi == f64::INFINITY;
         let undefined = self.undefined
             || other.undefined
-            || (holds_zero(self) && infinite(other))
-            || (holds_zero(other) && infinite(self));
+            || (holds_zero(self) && other.is_wide())
+            || (holds_zero(other) && self.is_wide());
         // Nothing times infinity is not a number at that very end only; the products beside it come near 0.
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
-        let products = [
-            product(self.lo, other.lo),
-            product(self.lo, other.hi),
-            product(self.hi, other.lo),
-            product(self.hi, other.hi),
-        ];
-        let lo = products.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = products.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::outward(lo, hi).or_undefined(undefined)
+        let (a, b) = (product(self.lo, other.lo), product(self.lo, other.hi));
+        let (c, d) = (product(self.hi, other.lo), product(self.hi, other.hi));
+        Self::outward(least(least(a, b), least(c, d)), most(most(a, b), most(c, d))).or_undefined(undefined)
     }
 
     pub(super) fn over(self, other: Self) -> Self {
@@ -164,9 +205,8 @@ impl Enclosure {
         if quotients.into_iter().any(f64::is_nan) {
             return Self::UNKNOWN;
         }
-        let lo = quotients.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = quotients.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::outward(lo, hi).or_undefined(undefined)
+        let [a, b, c, d] = quotients;
+        Self::outward(least(least(a, b), least(c, d)), most(most(a, b), most(c, d))).or_undefined(undefined)
     }
 
     fn is_wide(self) -> bool {
@@ -243,6 +283,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn ends_move_to_their_neighbours_or_beyond() {
+        let mut ends = vec![0.0, f64::MIN_POSITIVE, f64::MAX, f64::from_bits(1), 1.0, 1.0_f64.next_down(), 2.0_f64.powi(-970)];
+        let mut bits = 1_u64;
+        for _ in 0..20_000 {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ends.push(f64::from_bits(bits ^ bits >> 17));
+        }
+        for end in ends.into_iter().filter(|end| end.is_finite()).flat_map(|end| [end, -end]) {
+            let moved = Enclosure::outward(end, end);
+            assert!(moved.lo <= end.next_down() && moved.hi >= end.next_up(), "{end:e} {moved:?}");
+            let far = if end.abs() < 1e-290 { 1.0 } else { 3.0 * f64::EPSILON * end.abs() };
+            assert!(!moved.lo.is_finite() || end - moved.lo <= far, "{end:e} {moved:?}");
+        }
+        assert!(Enclosure::outward(f64::INFINITY, f64::INFINITY).undefined);
+        assert_eq!(Enclosure::outward(2.0, f64::INFINITY).hi, f64::INFINITY);
     }
 
     #[test]

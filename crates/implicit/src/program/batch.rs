@@ -45,14 +45,15 @@ impl BatchEvaluator {
     pub fn values(&mut self, program: &Program, origin: DVec3, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
         assert!(x.len() == out.len() && y.len() == out.len() && z.len() == out.len(), "slices of one length");
         let parts = &*program.0;
-        if self.registers.len() < parts.tape.registers {
-            self.registers.resize(parts.tape.registers, [0.0; LANES]);
+        let tape = parts.tape();
+        if self.registers.len() < tape.registers {
+            self.registers.resize(tape.registers, [0.0; LANES]);
         }
         if self.coordinates.is_empty() {
             self.coordinates = vec![[0.0; LANES]; 3].into_boxed_slice();
         }
         self.linears.clear();
-        self.linears.extend(parts.tape.linears.iter().map(|linear| LinearLanes {
+        self.linears.extend(tape.linears.iter().map(|linear| LinearLanes {
             slope: linear.slope.to_array().map(|slope| slope as f32),
             offset: linear.at(origin) as f32,
         }));
@@ -64,8 +65,8 @@ impl BatchEvaluator {
                 let last = lanes[count - 1];
                 lanes[count..].fill(last);
             }
-            run(&parts.tape, &parts.calls, &self.linears, &self.coordinates, origin, &mut self.registers);
-            out[start..start + count].copy_from_slice(&self.registers[parts.tape.result as usize][..count]);
+            run(tape, &parts.calls, &self.linears, &self.coordinates, origin, &mut self.registers);
+            out[start..start + count].copy_from_slice(&self.registers[tape.result as usize][..count]);
         }
     }
 }

@@ -41,6 +41,7 @@ impl IntervalEvaluator {
     pub fn bounds(&mut self, program: &Program, region: &Aabb) -> (Enclosure, Trace<'_>) {
         let parts = &*program.0;
         self.bounds.clear();
+        self.bounds.reserve(parts.steps.len());
         self.choices.clear();
         for step in &parts.steps {
             let at = |value: super::Value| self.bounds[value.index()];
@@ -80,12 +81,16 @@ impl Linear {
     fn over(&self, region: &Aabb) -> Enclosure {
         let ends = region.min.to_array().into_iter().zip(region.max.to_array());
         let mut sum = Enclosure::exactly(self.offset);
+        let mut empty = self.offset == 0.0;
         for (slope, (lo, hi)) in self.slope.to_array().into_iter().zip(ends) {
             if slope == 0.0 {
                 continue;
             }
-            let (part, _) = Binary::Multiply.of_enclosures(Enclosure::exactly(slope), Enclosure::new(lo, hi));
-            (sum, _) = Binary::Add.of_enclosures(sum, part);
+            let side = Enclosure::new(lo, hi);
+            // Nothing is rounded where a coordinate is taken as it is.
+            let part = if slope == 1.0 { side } else { Binary::Multiply.of_enclosures(Enclosure::exactly(slope), side).0 };
+            sum = if empty { part } else { Binary::Add.of_enclosures(sum, part).0 };
+            empty = false;
         }
         sum
     }

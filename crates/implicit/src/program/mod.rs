@@ -11,7 +11,7 @@ mod restrict;
 mod step;
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 pub use batch::BatchEvaluator;
 pub use compile::{CompileError, ParameterError};
@@ -44,16 +44,22 @@ struct Parts {
     steps: Vec<Step>,
     calls: Vec<Call>,
     result: Value,
-    tape: Tape,
+    /// Made when values are first asked for in batches: most simplified programs are asked for bounds alone.
+    tape: OnceLock<Tape>,
     choices: usize,
     nature: Nature,
 }
 
+impl Parts {
+    fn tape(&self) -> &Tape {
+        self.tape.get_or_init(|| Tape::new(&self.steps, self.result))
+    }
+}
+
 impl Program {
     fn new(steps: Vec<Step>, calls: Vec<Call>, result: Value, nature: Nature) -> Self {
-        let tape = Tape::new(&steps, result);
         let choices = steps.iter().filter(|step| interval::chooses(step)).count();
-        Self(Arc::new(Parts { steps, calls, result, tape, choices, nature }))
+        Self(Arc::new(Parts { steps, calls, result, tape: OnceLock::new(), choices, nature }))
     }
 
     /// The steps, and which of them is the result.
@@ -73,7 +79,7 @@ impl Program {
 
     /// How many numbers of a point must be kept at once while batches are evaluated.
     pub fn register_count(&self) -> usize {
-        self.0.tape.registers
+        self.0.tape().registers
     }
 
     /// How many of the steps choose one of their operands: minima, maxima and logical operators.

@@ -15,23 +15,41 @@ impl Program {
     /// The trace must come from this program.
     pub fn simplified(&self, trace: Trace<'_>) -> Self {
         let parts = &*self.0;
-        let mut choices = trace.0.iter();
-        let mut instead: Vec<Value> = Vec::with_capacity(parts.steps.len());
-        for (i, step) in parts.steps.iter().enumerate() {
-            let own = Value(i as u32);
-            let chosen = match *step {
-                Step::Binary(_, a, b) if chooses(step) => match choices.next() {
-                    Some(Choice::Left) => instead[a.index()],
-                    Some(Choice::Right) => instead[b.index()],
-                    _ => own,
-                },
-                _ => own,
+        let result = parts.result.index();
+        let mut needed = vec![false; parts.steps.len()];
+        needed[result] = true;
+        // What a step's value is instead; itself where nothing was decided.
+        let mut instead: Vec<u32> = (0..parts.steps.len() as u32).collect();
+        let mut choices = trace.0.iter().rev();
+        for (i, step) in parts.steps.iter().enumerate().rev() {
+            let choice = if chooses(step) { choices.next() } else { None };
+            if !needed[i] {
+                continue;
+            }
+            let chosen = match (*step, choice) {
+                (Step::Binary(_, a, _), Some(Choice::Left)) => a,
+                (Step::Binary(_, _, b), Some(Choice::Right)) => b,
+                _ => {
+                    step.operands().for_each(|operand| needed[operand.index()] = true);
+                    continue;
+                }
             };
-            instead.push(chosen);
+            needed[chosen.index()] = true;
+            instead[i] = chosen.0;
         }
-        let steps: Vec<Step> =
-            parts.steps.iter().map(|step| step.with_operands(|value| instead[value.index()])).collect();
-        Self::compact(&steps, &parts.calls, instead[parts.result.index()], parts.nature)
+        let is_kept = |i: usize, instead: &[u32]| needed[i] && instead[i] as usize == i;
+        // From here on the places of values among the steps that are kept.
+        let mut kept = Vec::with_capacity(needed.iter().filter(|needed| **needed).count());
+        let mut kept_calls = KeptCalls::new(&parts.calls);
+        for (i, step) in parts.steps.iter().enumerate().filter(|(i, _)| needed[*i]) {
+            if is_kept(i, &instead) {
+                kept.push(kept_calls.keep(step.with_operands(|value| Value(instead[value.index()]))));
+                instead[i] = kept.len() as u32 - 1;
+            } else {
+                instead[i] = instead[instead[i] as usize];
+            }
+        }
+        Self::new(kept, kept_calls.kept, Value(instead[result]), parts.nature)
     }
 
     /// The program of those steps alone that the result needs.
@@ -44,22 +62,13 @@ impl Program {
             }
         }
         let mut place = vec![Value(0); steps.len()];
-        let mut call_place = vec![u32::MAX; calls.len()];
-        let (mut kept, mut kept_calls): (Vec<Step>, Vec<Call>) = (Vec::new(), Vec::new());
+        let mut kept: Vec<Step> = Vec::new();
+        let mut kept_calls = KeptCalls::new(calls);
         for (i, step) in steps.iter().enumerate().filter(|(i, _)| needed[*i]) {
-            let mut step = step.with_operands(|value| place[value.index()]);
-            if let Step::Call(call, _) = &mut step {
-                let at = &mut call_place[*call as usize];
-                if *at == u32::MAX {
-                    *at = kept_calls.len() as u32;
-                    kept_calls.push(calls[*call as usize].clone());
-                }
-                *call = *at;
-            }
             place[i] = Value(kept.len() as u32);
-            kept.push(step);
+            kept.push(kept_calls.keep(step.with_operands(|value| place[value.index()])));
         }
-        Self::new(kept, kept_calls, place[result.index()], nature)
+        Self::new(kept, kept_calls.kept, place[result.index()], nature)
     }
 
     /// The same program with other fields in place of those it calls. Values inside the box stay as they are.
@@ -76,7 +85,33 @@ impl Program {
     }
 }
 
+/// The calls that remain, renumbered.
+struct KeptCalls<'a> {
+    all: &'a [Call],
+    place: Vec<u32>,
+    kept: Vec<Call>,
+}
+
+impl<'a> KeptCalls<'a> {
+    fn new(all: &'a [Call]) -> Self {
+        Self { all, place: vec![u32::MAX; all.len()], kept: Vec::new() }
+    }
+
+    fn keep(&mut self, mut step: Step) -> Step {
+        if let Step::Call(call, _) = &mut step {
+            let at = &mut self.place[*call as usize];
+            if *at == u32::MAX {
+                *at = self.kept.len() as u32;
+                self.kept.push(self.all[*call as usize].clone());
+            }
+            *call = *at;
+        }
+        step
+    }
+}
+
 impl Step {
+    #[inline(always)]
     fn with_operands(self, place: impl Fn(Value) -> Value) -> Self {
         match self {
             Self::Constant(_) | Self::Linear(_) => self,
