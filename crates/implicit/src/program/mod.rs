@@ -90,10 +90,10 @@ impl Program {
     /// About how much memory it takes, in bytes; not that of the fields that it calls.
     pub fn memory_bytes(&self) -> usize {
         let Parts { steps, tape, calls, .. } = &*self.0;
-        size_of_val(steps.as_slice())
-            + size_of_val(tape.instructions.as_slice())
-            + size_of_val(tape.linears.as_slice())
-            + size_of_val(calls.as_slice())
+        let tape = tape
+            .get()
+            .map_or(0, |tape| size_of_val(tape.instructions.as_slice()) + size_of_val(tape.linears.as_slice()));
+        size_of_val(steps.as_slice()) + tape + size_of_val(calls.as_slice())
     }
 
     /// What is known of the values.
