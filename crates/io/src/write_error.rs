@@ -63,6 +63,17 @@ pub enum WriteError {
         /// The most that the format can hold.
         max: u64,
     },
+    /// An implicit shape that the format cannot express.
+    Tree {
+        /// The id of the format.
+        format: &'static str,
+        /// What was found, and what was expected.
+        reason: String,
+        /// The code of the reason.
+        code: &'static str,
+        /// Its category.
+        category: Category,
+    },
     /// The output failed.
     Io {
         /// What kind of failure.
@@ -107,6 +118,7 @@ impl fmt::Display for WriteError {
             Self::TooLarge { format, what, found, max } => {
                 write!(f, "{format}: found {found} {what}, expected at most {max} ({code})")
             }
+            Self::Tree { format, reason, .. } => write!(f, "{format}: {reason} ({code})"),
             Self::Io { message, .. } => write!(f, "output: found {message}, expected a writable output ({code})"),
             Self::Stop(stop) => stop.fmt(f),
             Self::OverBudget(over) => over.fmt(f),
@@ -125,6 +137,7 @@ impl Diagnostic for WriteError {
             Self::Empty { .. } => "E-write-empty",
             Self::Turned { .. } => "E-write-turned",
             Self::TooLarge { .. } => "E-write-size",
+            Self::Tree { code, .. } => code,
             Self::Io { .. } => "E-write-io",
             Self::Stop(stop) => stop.code(),
             Self::OverBudget(over) => over.code(),
@@ -136,6 +149,7 @@ impl Diagnostic for WriteError {
             Self::NoWriter { .. } | Self::Unsupported { .. } | Self::Turned { .. } => Category::Unsupported,
             Self::NotFinite { .. } => Category::Failed,
             Self::Empty { .. } | Self::TooLarge { .. } | Self::Io { .. } => Category::CannotWrite,
+            Self::Tree { category, .. } => *category,
             Self::Stop(stop) => stop.category(),
             Self::OverBudget(over) => over.category(),
         }
@@ -154,6 +168,7 @@ impl Diagnostic for WriteError {
                 Some("turn it back, or convert it to triangles and choose a format of meshes".into())
             }
             Self::TooLarge { .. } => Some("write fewer parts a file, simplify, or choose another format".into()),
+            Self::Tree { .. } => Some("convert the part to triangles, or write the shape language".into()),
             Self::Io { .. } => None,
             Self::Stop(stop) => stop.advice(),
             Self::OverBudget(_) => Some("raise the memory limit".into()),

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Convert, Exec, Field};
-use shapeloom_implicit::{CurveDistance, Foreign};
+use shapeloom_implicit::CurveDistance;
+use shapeloom_implicit::{ForeignCall, Resolved};
 use shapeloom_mesh::{TriMesh, TriangulatePolygons};
 use shapeloom_parametric::TessellatePatches;
 use shapeloom_shape::{Geometry, Shape};
@@ -17,21 +18,12 @@ use crate::{ReadContext, SiblingName, detect, read};
 /// The functions that name a file.
 pub(super) const FUNCTIONS: [&str; 3] = ["mesh", "volume", "tube"];
 
-/// A call that names a file: the function, the file, and numbers by name.
-pub(super) struct FileCall<'a> {
-    pub(super) function: &'a str,
-    pub(super) file: &'a str,
-    pub(super) numbers: &'a [(String, f64)],
-    /// The call as text, which brings the node back.
-    pub(super) source: &'a str,
-}
-
 /// The field that a call names.
 ///
 /// # Errors
 /// In words: an unknown number, a file that is missing, unreadable or holds nothing of the kind that is wanted.
-pub(super) fn resolve(call: &FileCall<'_>, context: &ReadContext) -> Result<Foreign, String> {
-    let known: &[&str] = match call.function {
+pub(super) fn resolve(call: &ForeignCall, context: &ReadContext) -> Result<Resolved, String> {
+    let known: &[&str] = match call.function.as_str() {
         "mesh" => &["tolerance"],
         "volume" => &["iso"],
         "tube" => &["radius", "tolerance"],
@@ -42,23 +34,22 @@ pub(super) fn resolve(call: &FileCall<'_>, context: &ReadContext) -> Result<Fore
     if let Some((name, _)) = call.numbers.iter().find(|(name, _)| !known.contains(&name.as_str())) {
         return Err(format!("found {name}, expected {}", known.join(" or ")));
     }
-    let shape = open(call.file, context)?;
-    let number = |wanted: &str| call.numbers.iter().find(|(name, _)| name == wanted).map(|(_, value)| *value);
+    let shape = open(&call.argument, context)?;
     let size = placed(&shape).map(|geometry| geometry.bounds()).fold(Aabb::EMPTY, Aabb::union).diagonal();
     // A thousandth of the size is less than a pixel of most pictures.
-    let tolerance = number("tolerance").unwrap_or(if size > 0.0 { size * 1e-3 } else { 1.0 });
+    let tolerance = call.number("tolerance").unwrap_or(if size > 0.0 { size * 1e-3 } else { 1.0 });
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(format!("found tolerance {tolerance}, expected a finite number above 0"));
     }
-    let (field, exact) = match call.function {
+    let (field, exact) = match call.function.as_str() {
         "mesh" => mesh(&shape, tolerance, &context.exec)?,
-        "volume" => (volume(&shape, number("iso"), &context.exec)?, false),
+        "volume" => (volume(&shape, call.number("iso"), &context.exec)?, false),
         _ => {
-            let radius = number("radius").ok_or("found no radius, expected one")?;
+            let radius = call.number("radius").ok_or("found no radius, expected one")?;
             (tube(&shape, radius, tolerance)?, false)
         }
     };
-    Ok(Foreign::new(call.source, field, exact))
+    Ok(Resolved { field, exact })
 }
 
 fn open(file: &str, context: &ReadContext) -> Result<Shape, String> {
