@@ -385,6 +385,45 @@ mod tests {
         }
     }
 
+    /// Where all weights of one sign meet samples of that sign, the cubic interpolant is as large as it can be.
+    #[test]
+    fn the_bound_of_cubic_overshoot_is_met() {
+        let side = |at: f64| if (1.0..=2.0).contains(&at) { 1.0 } else { -1.0 };
+        let field = field([4; 3], Interpolation::Tricubic, |at| side(at.x) * side(at.y) * side(at.z));
+        let middle = placement().point(DVec3::splat(1.5));
+        let largest = field.value(middle);
+        assert!((largest - 1.25f64.powi(3)).abs() < 1e-12, "{largest}");
+        let range = field.range(&Aabb { min: middle - 1e-6, max: middle + 1e-6 });
+        assert!(range.contains(largest) && range.hi < largest + 1e-9, "{range:?}");
+    }
+
+    #[test]
+    fn one_sample_is_in_the_range_of_every_box_around_it() {
+        let mut dice = Dice(5);
+        for _ in 0..40 {
+            let spike = (dice.point() * 17.0).floor();
+            let field = field([17; 3], Interpolation::Trilinear, |at| if at == spike { 1.0 } else { 0.0 });
+            for reach in [0.0, 1.0, 5.0, 30.0] {
+                let place = placement().point(spike);
+                let range = field.range(&Aabb { min: place - reach, max: place + reach });
+                assert!(range.lo <= 0.0 && range.hi >= 1.0, "{spike} {reach}: {range:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn densities_are_negative_inside_and_slopes_along_diagonals_are_bounded() {
+        let lattice = Lattice::along_axes([3; 3], DVec3::ZERO, DVec3::ONE).unwrap();
+        let sum = |at: u64| lattice.coordinates(at).into_iter().sum::<u32>() as f32;
+        let samples = Samples::F32((0..27).map(sum).collect());
+        let grid = VoxelGrid::try_new(lattice, samples, Quantity::Density).unwrap();
+        let level = Level { iso: 2.0, inside: Inside::Above };
+        let field = GridField::try_new(&grid, level, Interpolation::Trilinear, &Exec::default()).unwrap();
+        assert_eq!((field.value(DVec3::ZERO), field.value(DVec3::splat(2.0))), (2.0, -4.0));
+        let bound = field.lipschitz().unwrap();
+        assert!((bound / 3f64.sqrt() - 1.0).abs() < 1e-12, "{bound}");
+    }
+
     #[test]
     fn strange_samples_and_points_are_told() {
         let lattice = Lattice::along_axes([2, 1, 1], DVec3::ZERO, DVec3::ONE).unwrap();

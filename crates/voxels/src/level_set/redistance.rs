@@ -15,16 +15,16 @@ use crate::{Quantity, SparseBricks, VoxelGrid, morton};
 options! {
     /// Signed distances to the surface of a grid of anything: negative inside.
     ///
-    /// The surface between samples is cut into triangles by marching tetrahedra; the samples around it get their exact
-    /// distance to those. From there on a front goes outward in the order of distance, as in fast marching (Sethian
-    /// 1996), but each sample takes the nearest of the triangles that its neighbours have and of those in the cells
-    /// around, instead of solving a quadratic equation: its value is the exact distance to some triangle, so never less
-    /// than to the nearest, and mostly that. Lattices may be skewed.
+    /// The surface between samples is cut into triangles by marching tetrahedra. Sweeps over the lattice in all orders
+    /// hand the cells of these triangles on from sample to sample, each of which keeps the one whose middle is nearest
+    /// (Danielsson 1980; Tsai 2002). Then every sample looks at the triangles in that cell and in the 27 around it, goes
+    /// on from the nearest, and looks at last in the cells that its neighbours found: its value is the exact distance to
+    /// some triangle, so never less than to the nearest, and mostly that. Lattices may be skewed.
     ///
     /// Every sample keeps its side, so no cell gains or loses surface. At the border of the lattice the surface ends:
     /// distances are to what lies inside. Samples that are NaN or infinite are outside, and get finite distances too.
-    /// On one thread. Cost: O(n log n) in samples; with a band in those of the band. Memory: 64 bytes a sample, 92 a
-    /// triangle.
+    /// On all threads, with the same bits. Cost: linear in samples. Memory: 8 bytes a sample, and some 200 a triangle while
+    /// the surface is found.
     pub struct Redistance("redistance") {
         required {}
         optional {
