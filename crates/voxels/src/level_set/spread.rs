@@ -47,7 +47,7 @@ pub(super) fn distances(
         (x - a) * (x - a) + (y - b) * (y - b) + (z - c) * (z - c)
     };
     for cell in 0..surface.cells() as u32 {
-        if cell as usize % POLL == 0 {
+        if (cell as usize).is_multiple_of(POLL) {
             exec.check()?;
         }
         let base = surface.base(cell);
@@ -101,7 +101,7 @@ pub(super) fn distances(
         for Row { squared, cells } in row {
             let mut last: Option<Nearest> = None;
             for (i, (value, cell)) in squared.iter_mut().zip(cells.iter_mut()).enumerate() {
-                if i % POLL == 0 {
+                if i.is_multiple_of(POLL) {
                     exec.check()?;
                 }
                 if *value > far {
@@ -128,7 +128,7 @@ pub(super) fn distances(
         second.progress(start as f64 / samples as f64);
         let [_, j, k] = lattice.coordinates(start as u64).map(|at| at as usize);
         for (i, value) in part.iter_mut().enumerate() {
-            if i % POLL == 0 {
+            if i.is_multiple_of(POLL) {
                 exec.check()?;
             }
             let own = cells[start + i];

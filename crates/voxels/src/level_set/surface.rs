@@ -98,7 +98,7 @@ impl Surface {
                     }
                 }
                 for (i, pair) in inside_of.windows(2).enumerate() {
-                    if (pair[0] + pair[1]) % 8 == 0 {
+                    if (pair[0] + pair[1]).is_multiple_of(8) {
                         continue;
                     }
                     let sample = |c: usize| {
@@ -156,7 +156,7 @@ impl Surface {
         let pieces = cells.iter().map(|(_, samples)| count_pieces(samples, level)).sum::<u64>();
         self.reserve(cells.len(), pieces as usize, exec)?;
         for (polled, (base, samples)) in cells.iter().enumerate() {
-            if polled % 1024 == 0 {
+            if polled.is_multiple_of(1024) {
                 exec.check()?;
             }
             let corner = |c: usize| std::array::from_fn(|axis| base[axis] + (c >> axis & 1) as u32);
