@@ -284,6 +284,7 @@ mod tests {
     use super::*;
     use crate::{Quantity, Samples, VoxelGrid};
     use shapeloom_core::AxisAngle;
+    use shapeloom_core::glam::DMat3;
 
     struct Dice(u64);
 
@@ -412,16 +413,21 @@ mod tests {
     }
 
     #[test]
-    fn densities_are_negative_inside_and_slopes_along_diagonals_are_bounded() {
-        let lattice = Lattice::along_axes([3; 3], DVec3::ZERO, DVec3::ONE).unwrap();
+    fn densities_are_negative_inside_and_slopes_of_skewed_lattices_are_bounded() {
+        // Lattice coordinates rise along nearly the same direction: their sum has thrice the slope of each.
+        let rows = DMat3::from_diagonal(DVec3::splat(0.01)) + DMat3::from_cols(DVec3::ONE, DVec3::ZERO, DVec3::ZERO);
+        let placement = Affine { linear: rows.inverse(), translation: DVec3::ZERO };
+        let lattice = Lattice::try_new([3; 3], placement).unwrap();
         let sum = |at: u64| lattice.coordinates(at).into_iter().sum::<u32>() as f32;
         let samples = Samples::F32((0..27).map(sum).collect());
         let grid = VoxelGrid::try_new(lattice, samples, Quantity::Density).unwrap();
         let level = Level { iso: 2.0, inside: Inside::Above };
         let field = GridField::try_new(&grid, level, Interpolation::Trilinear, &Exec::default()).unwrap();
-        assert_eq!((field.value(DVec3::ZERO), field.value(DVec3::splat(2.0))), (2.0, -4.0));
-        let bound = field.lipschitz().unwrap();
-        assert!((bound / 3f64.sqrt() - 1.0).abs() < 1e-12, "{bound}");
+        for (at, wanted) in [([0; 3], 2.0), ([2; 3], -4.0)] {
+            assert!((field.value(lattice.position(at)) - wanted).abs() < 1e-9);
+        }
+        let steepest = field.gradient(lattice.position([1; 3])).length();
+        assert!((steepest - 3.01).abs() < 0.01 && field.lipschitz().unwrap() >= steepest, "{steepest}");
     }
 
     #[test]
