@@ -5,6 +5,7 @@
 
 mod bench;
 mod between_formats;
+mod boolean_command;
 mod cell_faces;
 mod check;
 mod codes;

@@ -38,7 +38,7 @@ fn every_task_prints_lines_of_json() {
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
             Task::SurfaceNets => 3,
             Task::Isosurface => 4,
-            Task::Closest | Task::Onering | Task::Heightfield | Task::MeshToSdf => 2,
+            Task::Closest | Task::Onering | Task::Heightfield | Task::MeshToSdf | Task::Redistance => 2,
             Task::Read | Task::Write | Task::Rays => 5,
             Task::Octree => 7,
         };

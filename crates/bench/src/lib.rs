@@ -15,6 +15,7 @@ mod mesh_to_sdf;
 mod octree;
 mod queries;
 mod rays;
+mod redistance;
 mod self_intersection;
 mod signed_distance;
 mod surface_nets;
@@ -99,10 +100,12 @@ pub enum Task {
     SurfaceNets,
     /// Signed distances of blob_1m.ply (else of a torus) on 256³ samples.
     MeshToSdf,
-    /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an octree and back.
     /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an
     /// octree and back.
     Octree,
+    /// Signed distances of vol_blend.f32, vol_gyroid.f32 and tooth.nrrd (else of a small volume of a formula): all, and
+    /// those of a narrow band.
+    Redistance,
 }
 
 impl Task {
@@ -164,7 +167,7 @@ impl Task {
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
-            Self::Octree => Vec::new(),
+            Self::Octree | Self::Redistance => Vec::new(),
         }
     }
 }
@@ -217,6 +220,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::SurfaceNets => surface_nets::run(&setting),
         Task::MeshToSdf => mesh_to_sdf::run(&setting),
         Task::Octree => octree::run(&setting),
+        Task::Redistance => redistance::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

@@ -25,7 +25,7 @@ pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
 }
 
 /// The volumes of the peers, which are 256³ distances on the cube from -1.5 to 1.5; else a small one of a formula.
-fn volumes(setting: &Setting) -> Result<Vec<(String, VoxelGrid)>, String> {
+pub(crate) fn volumes(setting: &Setting) -> Result<Vec<(String, VoxelGrid)>, String> {
     let mut volumes = Vec::new();
     for name in ["vol_blend.f32", "vol_gyroid.f32"] {
         let path = setting.data.join(name);

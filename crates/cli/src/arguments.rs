@@ -70,6 +70,8 @@ pub(crate) enum Command {
     Render(RenderArguments),
     /// Make a ready shape
     Make(MakeArguments),
+    /// Make one solid of two volumes: both, what they share, the first without the second, or one between them
+    Boolean(BooleanArguments),
     /// Compare the data structures that can hold a mesh: their size, what they can answer, and how fast
     Structures(StructuresArguments),
     /// List the file formats
@@ -172,6 +174,36 @@ pub(crate) struct CheckArguments {
     /// Judge all parts as one mesh, so that parts that cross each other are found; faces and vertices are numbered on
     #[arg(long)]
     pub(crate) together: bool,
+    #[command(flatten)]
+    pub(crate) way: WayArguments,
+    #[command(flatten)]
+    pub(crate) source: SourceArguments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BooleanArguments {
+    /// The first volume, or - for standard input
+    pub(crate) first: PathBuf,
+    /// The second volume, or - for standard input
+    pub(crate) second: PathBuf,
+    #[command(flatten)]
+    pub(crate) target: TargetArguments,
+    /// What becomes of the two
+    #[arg(long, value_name = "OP", required_unless_present = "morph",
+          value_parser = PossibleValuesParser::new(["union", "intersection", "difference"]))]
+    pub(crate) op: Option<String>,
+    /// Fillet where the two of a union meet: the difference of their distances up to which they blend, above 0
+    #[arg(long, value_name = "RADIUS", conflicts_with_all = ["morph", "cells"], allow_hyphen_values = true)]
+    pub(crate) smooth: Option<f32>,
+    /// A solid between the two instead: 0 for the first, 1 for the second
+    #[arg(long, value_name = "PART", conflicts_with_all = ["op", "cells"], allow_hyphen_values = true)]
+    pub(crate) morph: Option<f32>,
+    /// Combine full cells, by octrees, in place of distances: the result has a bit a cell
+    #[arg(long)]
+    pub(crate) cells: bool,
+    /// Where the second has another lattice, sample what it has between its samples on that of the first
+    #[arg(long)]
+    pub(crate) resample: bool,
     #[command(flatten)]
     pub(crate) way: WayArguments,
     #[command(flatten)]

@@ -15,6 +15,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-bezier-degree", "A Bézier degree is above 255, beyond which an evaluation takes over a millisecond."),
     ("E-bezier-empty", "A curve has no control points."),
     ("E-bezier-finite", "A control point is infinite or not a number."),
+    (
+        "E-boolean-volume",
+        "The file is not one volume. Operations on two volumes need a grid of samples each; a mesh becomes one by mesh-to-distance or voxelize-mesh.",
+    ),
     ("E-bvh-count", "There are more triangles than 32-bit ids can tell apart."),
     ("E-bvh-finite", "A triangle's corner is infinite or not a number."),
     ("E-bvh-index", "A triangle names a vertex that does not exist."),
@@ -143,6 +147,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The shape is so large, so small or so far away that no view takes it in: squares of its coordinates are beyond the numbers.",
     ),
     ("E-plan-method", "No converter has the name given with --method; `shapeloom graph` lists them."),
+    (
+        "E-plan-missing",
+        "A converter on the way has an option that follows from nothing else, as the distance of an offset: give it with --set.",
+    ),
     ("E-plan-no-way", "No chain of converters leads from what the input holds to what the output format can hold."),
     ("E-plan-off-the-way", "The converter named with --method does not fit between the input and the output."),
     ("E-plan-option", "No converter on the way has the option given with --set."),
@@ -220,6 +228,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-color", "--color distance goes with --reference FILE, and --color-range with it."),
     ("E-usage-format", "The format of standard output has to be named with --to."),
     ("E-usage-kind", "There is no kind of shape of that name; `shapeloom graph` lists them."),
+    ("E-usage-operation", "An option of the command that goes with another operation: --smooth goes with --op union."),
     ("E-usage-outputs", "Two outputs have one name, or two kinds of data want standard output."),
     ("E-usage-setting", "An option given with --set means nothing here: for this format, or for this command."),
     ("E-usage-shape", "There is no ready shape of that name."),
@@ -263,6 +272,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-voxels-thin",
         "Level sets need cells, and a lattice that is one sample thick has none. Make meshes of it directly, or resample it with two samples or more in each direction.",
+    ),
+    (
+        "W-boolean-beyond",
+        "The second volume was sampled where it has no samples: there the value of its border's nearest point was taken.",
     ),
     (
         "W-cells-merged",

@@ -44,7 +44,7 @@ pub fn catalog() -> Vec<Converter> {
         entry::<Compact, TriMesh>(Effect::WithinTolerance),
         entry::<VertexNormals, TriMesh>(Effect::Exact),
         entry::<Redistance, VoxelGrid>(Effect::Reported),
-        entry::<OffsetLevelSet, VoxelGrid>(Effect::Reported),
+        entry::<OffsetLevelSet, VoxelGrid>(Effect::Reported).asks_for(&["distance"]),
         entry::<CurvatureFlow, VoxelGrid>(Effect::Reported),
     ]
 }

@@ -39,6 +39,13 @@ pub enum PlanError {
         /// What was wanted.
         to: Vec<Kind>,
     },
+    /// An option that follows from nothing else is not set.
+    MissingOption {
+        /// The converter.
+        method: &'static str,
+        /// Its option.
+        option: &'static str,
+    },
     /// An option that no converter on the way has.
     UnknownOption {
         /// The option as given.
@@ -72,6 +79,9 @@ impl fmt::Display for PlanError {
             Self::MethodOffTheWay { method, takes, gives, from, to } => {
                 write!(f, "{method} turns {takes} into {gives}: found no way through it from {from} to {}", list(to))
             }
+            Self::MissingOption { method, option } => {
+                write!(f, "{method}: found no {option}, expected --set {option}=VALUE: no tolerance gives it")
+            }
             Self::UnknownOption { found, known } if known.is_empty() => {
                 write!(f, "found option \"{found}\", expected none: no step on this way has options")
             }
@@ -90,6 +100,7 @@ impl Diagnostic for PlanError {
             Self::NoWay { .. } => "E-plan-no-way",
             Self::UnknownMethod { .. } => "E-plan-method",
             Self::MethodOffTheWay { .. } => "E-plan-off-the-way",
+            Self::MissingOption { .. } => "E-plan-missing",
             Self::UnknownOption { .. } => "E-plan-option",
         }
     }
@@ -97,7 +108,7 @@ impl Diagnostic for PlanError {
     fn category(&self) -> Category {
         match self {
             Self::NoWay { .. } | Self::MethodOffTheWay { .. } => Category::Unsupported,
-            Self::UnknownMethod { .. } | Self::UnknownOption { .. } => Category::Usage,
+            Self::UnknownMethod { .. } | Self::MissingOption { .. } | Self::UnknownOption { .. } => Category::Usage,
         }
     }
 
@@ -107,6 +118,7 @@ impl Diagnostic for PlanError {
                 Some(name) => format!("say --method {name}; `shapeloom graph` tells what it makes of the shape"),
                 None => "`shapeloom graph` lists every converter".into(),
             }),
+            Self::MissingOption { .. } => Some("`shapeloom graph` tells what it means".into()),
             _ => None,
         }
     }

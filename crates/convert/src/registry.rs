@@ -36,6 +36,8 @@ pub struct Converter {
     /// Whether it is used only where it is named, because what it makes is one reading of its source among others:
     /// triangles between scattered points.
     pub only_by_name: bool,
+    /// Options that no tolerance gives a value, so that they must be set where the converter is used.
+    pub must_set: &'static [&'static str],
     /// The name of the struct that implements it.
     pub type_name: &'static str,
     summary: fn() -> String,
@@ -52,6 +54,13 @@ impl Converter {
     #[must_use]
     pub(crate) fn only_by_name(mut self) -> Self {
         self.only_by_name = true;
+        self
+    }
+
+    /// The same, used only where these options are set.
+    #[must_use]
+    pub(crate) fn asks_for(mut self, options: &'static [&'static str]) -> Self {
+        self.must_set = options;
         self
     }
 
@@ -140,6 +149,7 @@ where
         to: <C::Output as Representation>::KIND,
         effect,
         only_by_name: false,
+        must_set: &[],
         type_name: path.rsplit("::").next().unwrap_or(path),
         summary: C::summary,
         specs: C::specs,

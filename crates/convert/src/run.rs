@@ -94,6 +94,7 @@ pub fn convert_shape(shape: &Shape, job: &Job, exec: &Exec) -> Result<Conversion
         groups[group].stretch = groups[group].stretch.max(stretch(&part.placement));
     }
     check_settings(&groups, &job.settings)?;
+    check_must_set(&groups, &job.settings)?;
 
     let mut result = Conversion {
         shape: Shape { parts: shape.parts.clone(), ..shape.clone() },
@@ -196,6 +197,19 @@ fn setting_for(converter: &str, options: &[&str], (key, value): &(String, String
         Some((owner, name)) => (owner == converter).then(|| (name.to_owned(), value.clone())),
         None => options.contains(&key.as_str()).then(|| (key.clone(), value.clone())),
     }
+}
+
+/// Refuses a way with a converter whose options are not all told by the tolerance, and are not set either.
+fn check_must_set(groups: &[Group<'_>], settings: &[(String, String)]) -> Result<(), PlanError> {
+    for step in groups.iter().flat_map(|group| &group.plan.steps) {
+        for &option in step.must_set {
+            let sets = |setting| setting_for(step.name, &[option], setting).is_some_and(|(name, _)| name == option);
+            if !settings.iter().any(sets) {
+                return Err(PlanError::MissingOption { method: step.name, option });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Refuses options that no step on any way has.

@@ -2,7 +2,9 @@
 
 use std::fmt;
 
+use shapeloom_core::glam::{DVec2, Vec3Swizzles};
 use shapeloom_core::{Category, Diagnostic};
+use shapeloom_isosurface::Lattice;
 
 /// Why a grid, an octree or bricks cannot be made or used.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,12 +35,10 @@ pub enum VoxelError {
         most: u32,
     },
     /// Two grids that lie on different lattices.
-    Lattices {
-        /// The samples of the first.
-        first: [u32; 3],
-        /// The samples of the second.
-        second: [u32; 3],
-    },
+    Lattices(
+        /// The first and the second.
+        Box<[Lattice; 2]>,
+    ),
     /// A sample that is NaN or infinite where only numbers will do.
     NotFinite {
         /// Where it is in the lattice.
@@ -93,10 +93,10 @@ impl fmt::Display for VoxelError {
             Self::TooLarge { structure, dimensions: [x, y, z], most } => {
                 write!(f, "{structure}: found {x} x {y} x {z} samples, expected at most {most} in a direction")
             }
-            Self::Lattices { first: [a, b, c], second: [x, y, z] } => write!(
-                f,
-                "two grids: found lattices of {a} x {b} x {c} and {x} x {y} x {z} samples, expected one lattice in one place"
-            ),
+            Self::Lattices(both) => {
+                let [first, second] = both.each_ref().map(Named);
+                write!(f, "two grids: found {first}, and {second}, expected one lattice in one place")
+            }
             Self::NotFinite { sample: [i, j, k], found } => {
                 write!(f, "grid: sample ({i}, {j}, {k}): found {found}, expected a finite number")
             }
@@ -114,6 +114,23 @@ impl fmt::Display for VoxelError {
                 write!(f, "octree: bit {bit}: found eight equal leaves, expected one leaf in their place")
             }
             Self::OctreeTrails { bit } => write!(f, "octree: bit {bit}: found more, expected zeros up to a whole byte"),
+        }
+    }
+}
+
+/// A lattice in words.
+struct Named<'a>(&'a Lattice);
+
+impl fmt::Display for Named<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.0.dimensions();
+        let origin = self.0.placement().translation;
+        let [a, b, c] = self.0.steps();
+        let along_axes = a.yz() == DVec2::ZERO && b.xz() == DVec2::ZERO && c.xy() == DVec2::ZERO;
+        write!(f, "{x} x {y} x {z} samples from {origin} ")?;
+        match along_axes {
+            true => write!(f, "in steps of {} x {} x {}", a.x, b.y, c.z),
+            false => write!(f, "in steps of {a}, {b} and {c}"),
         }
     }
 }
@@ -141,7 +158,7 @@ impl Diagnostic for VoxelError {
     fn category(&self) -> Category {
         match self {
             Self::TooLarge { .. } | Self::Steps { .. } | Self::CellSize { .. } => Category::OverLimit,
-            Self::Lattices { .. } | Self::Overflow { .. } | Self::NotCubes => Category::Usage,
+            Self::Lattices(_) | Self::Overflow { .. } | Self::NotCubes => Category::Usage,
             Self::Thin { .. } => Category::Unsupported,
             _ => Category::Malformed,
         }
@@ -152,7 +169,7 @@ impl Diagnostic for VoxelError {
             Self::CellSize { .. } => {
                 Some("choose another cell size, resolution, margin or radius, or scale or move the shape".into())
             }
-            Self::Lattices { .. } => Some("sample both on one lattice".into()),
+            Self::Lattices(_) => Some("sample both on one lattice".into()),
             Self::Steps { .. } => Some("ask for less time, or a coarser grid".into()),
             _ => None,
         }

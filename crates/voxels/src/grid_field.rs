@@ -284,6 +284,7 @@ mod tests {
     use super::*;
     use crate::{Quantity, Samples, VoxelGrid};
     use shapeloom_core::AxisAngle;
+    use shapeloom_core::glam::DMat3;
 
     struct Dice(u64);
 
@@ -383,6 +384,50 @@ mod tests {
             let [a, b] = [dice.point(), dice.point()].map(|at| placement().point(at * 12.0 - 2.0));
             assert!((field.value(a) - field.value(b)).abs() <= bound * a.distance(b) + 1e-9);
         }
+    }
+
+    /// Where all weights of one sign meet samples of that sign, the cubic interpolant is as large as it can be.
+    #[test]
+    fn the_bound_of_cubic_overshoot_is_met() {
+        let side = |at: f64| if (1.0..=2.0).contains(&at) { 1.0 } else { -1.0 };
+        let field = field([4; 3], Interpolation::Tricubic, |at| side(at.x) * side(at.y) * side(at.z));
+        let middle = placement().point(DVec3::splat(1.5));
+        let largest = field.value(middle);
+        assert!((largest - 1.25f64.powi(3)).abs() < 1e-12, "{largest}");
+        let range = field.range(&Aabb { min: middle - 1e-6, max: middle + 1e-6 });
+        assert!(range.contains(largest) && range.hi < largest + 1e-9, "{range:?}");
+    }
+
+    #[test]
+    fn one_sample_is_in_the_range_of_every_box_around_it() {
+        let mut dice = Dice(5);
+        for _ in 0..40 {
+            let spike = (dice.point() * 17.0).floor();
+            let field = field([17; 3], Interpolation::Trilinear, |at| if at == spike { 1.0 } else { 0.0 });
+            for reach in [0.0, 1.0, 5.0, 30.0] {
+                let place = placement().point(spike);
+                let range = field.range(&Aabb { min: place - reach, max: place + reach });
+                assert!(range.lo <= 0.0 && range.hi >= 1.0, "{spike} {reach}: {range:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn densities_are_negative_inside_and_slopes_of_skewed_lattices_are_bounded() {
+        // Lattice coordinates rise along nearly the same direction: their sum has thrice the slope of each.
+        let rows = DMat3::from_diagonal(DVec3::splat(0.01)) + DMat3::from_cols(DVec3::ONE, DVec3::ZERO, DVec3::ZERO);
+        let placement = Affine { linear: rows.inverse(), translation: DVec3::ZERO };
+        let lattice = Lattice::try_new([3; 3], placement).unwrap();
+        let sum = |at: u64| lattice.coordinates(at).into_iter().sum::<u32>() as f32;
+        let samples = Samples::F32((0..27).map(sum).collect());
+        let grid = VoxelGrid::try_new(lattice, samples, Quantity::Density).unwrap();
+        let level = Level { iso: 2.0, inside: Inside::Above };
+        let field = GridField::try_new(&grid, level, Interpolation::Trilinear, &Exec::default()).unwrap();
+        for (at, wanted) in [([0; 3], 2.0), ([2; 3], -4.0)] {
+            assert!((field.value(lattice.position(at)) - wanted).abs() < 1e-9);
+        }
+        let steepest = field.gradient(lattice.position([1; 3])).length();
+        assert!((steepest - 3.01).abs() < 0.01 && field.lipschitz().unwrap() >= steepest, "{steepest}");
     }
 
     #[test]

@@ -18,6 +18,7 @@ mod samples;
 mod sparse_bricks;
 mod voxel_grid;
 mod voxelize;
+mod waves;
 
 pub use cell_faces::CellFaces;
 pub use error::VoxelError;

@@ -1,5 +1,6 @@
 //! The commands, a file each.
 
+pub(crate) mod boolean;
 pub(crate) mod check;
 pub(crate) mod coloring;
 pub(crate) mod compare;

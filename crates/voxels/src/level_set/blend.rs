@@ -71,8 +71,7 @@ pub fn blend(a: &VoxelGrid, b: &VoxelGrid, how: Blend, exec: &Exec) -> Result<Vo
     how.check()?;
     let lattice = *a.lattice();
     if lattice != *b.lattice() {
-        let (first, second) = (lattice.dimensions(), b.lattice().dimensions());
-        return Err(VoxelError::Lattices { first, second }.into());
+        return Err(VoxelError::Lattices(Box::new([lattice, *b.lattice()])).into());
     }
     let _memory = exec.reserve_elements(lattice.samples(), 2 * size_of::<f32>())?;
     let mut values = signed_values(a, exec)?;
@@ -95,8 +94,7 @@ pub fn blend_bands(a: &SparseBricks, b: &SparseBricks, how: Blend, exec: &Exec) 
     how.check()?;
     let lattice = *a.lattice();
     if lattice != *b.lattice() {
-        let (first, second) = (lattice.dimensions(), b.lattice().dimensions());
-        return Err(VoxelError::Lattices { first, second }.into());
+        return Err(VoxelError::Lattices(Box::new([lattice, *b.lattice()])).into());
     }
     let half_width = a.background().min(b.background());
     if half_width.is_nan() || half_width <= 0.0 {

@@ -6,6 +6,8 @@ mod march;
 mod offset;
 mod pieces;
 mod redistance;
+mod spread;
+mod surface;
 #[cfg(test)]
 mod tests;
 

@@ -8,6 +8,16 @@ use shapeloom_isosurface::Level;
 const TETRAHEDRA: [[usize; 4]; 6] =
     [[0, 1, 3, 7], [0, 1, 5, 7], [0, 2, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 4, 6, 7]];
 
+/// How many triangles a cell has, by which of its corners are inside.
+pub(super) fn count(inside: [bool; 8]) -> usize {
+    let of = |tetrahedron: &[usize; 4]| match tetrahedron.iter().filter(|&&corner| inside[corner]).count() {
+        0 | 4 => 0,
+        2 => 2,
+        _ => 1,
+    };
+    TETRAHEDRA.iter().map(of).sum()
+}
+
 /// Calls `emit` for each triangle of the surface in a cell, by marching tetrahedra. Orientation is not kept.
 pub(super) fn for_each_piece(samples: &[f32; 8], corners: &[DVec3; 8], level: Level, mut emit: impl FnMut([DVec3; 3])) {
     let inside = samples.map(|sample| level.holds(sample));

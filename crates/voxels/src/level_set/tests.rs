@@ -250,6 +250,35 @@ fn set_operations_are_those_of_each_sample() {
 }
 
 #[test]
+fn densities_count_from_their_level_and_bands_have_the_smaller_width() {
+    let lattice = cube(9);
+    let distance = |p: DVec3| sphere(p, 0.6);
+    let at = |at: u64| u8::from(distance(lattice.position(lattice.coordinates(at))) < 0.0);
+    let samples = Samples::U8((0..lattice.samples()).map(at).collect());
+    let full = VoxelGrid::try_new(lattice, samples, Quantity::Occupancy).unwrap();
+    let [a, b] = [&full, &grid_on(lattice, |_| 9.0)].map(|grid| grid.clone());
+    let found = blend(&a, &b, Blend::Union, &exec()).unwrap();
+    for at in 0..lattice.samples() {
+        let wanted = if distance(lattice.position(lattice.coordinates(at))) < 0.0 { -0.5 } else { 0.5 };
+        assert_eq!(found.samples().get(at), wanted);
+    }
+    let band = |width: f32| SparseBricks::narrow_band(&grid_on(lattice, distance), width, &exec()).unwrap();
+    let both = blend_bands(&band(0.2), &band(0.4), Blend::Union, &exec()).unwrap();
+    assert_eq!(both.background(), 0.2);
+}
+
+#[test]
+fn redistancing_has_the_same_bits_on_any_number_of_threads() {
+    let source = grid_on(cube(37), |p| bent(p, torus(p)));
+    let alone = Exec::default().with_threads(shapeloom_core::Threads::Sequential);
+    let wanted = Redistance::new().convert_with(&source, &alone).unwrap();
+    for threads in 1..=3 {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        assert!(pool.install(|| Redistance::new().convert(&source).unwrap()) == wanted, "{threads} threads");
+    }
+}
+
+#[test]
 fn smooth_unions_stay_within_a_quarter_of_the_radius() {
     let how = Blend::SmoothUnion { radius: 0.8 };
     for i in -20..=20 {
@@ -262,6 +291,8 @@ fn smooth_unions_stay_within_a_quarter_of_the_radius() {
         }
     }
     assert!((how.value(1.0, 1.0) - 0.8).abs() < 1e-6);
+    // Half way to the radius a quarter of that is left: the polynomial is quadratic.
+    assert!((how.value(1.0, 1.4) - 0.95).abs() < 1e-6);
 }
 
 #[test]

@@ -45,7 +45,7 @@ options! {
     ///
     /// Memory: 4 bytes a sample for the result, a quarter of a byte a sample meanwhile, 28 bytes a triangle, and for each thread 8 MiB; for
     /// meshes that are not closed 350 bytes a triangle more. Cost: for each triangle the samples in its band, about a microsecond for a small one
-    /// and a band of 3; sweeping takes 110 ns a sample, on one thread.
+    /// and a band of 3; sweeping takes 110 ns a sample, shared by all threads.
     ///
     /// Errors: positions that are not finite; cells smaller than 1e-30 or larger than 1e30, where squares leave single precision; too little
     /// memory in the budget.

@@ -1,9 +1,14 @@
 //! Distances beyond a band: the fast sweeping method.
 
-use shapeloom_core::{Exec, Stop};
+use shapeloom_core::{ConvertError, Exec};
+
+use crate::waves::Sweep;
 
 /// A value above every distance in cells.
 pub(super) const FAR: f32 = 1e30;
+
+/// Samples of the rows that are visited in one go.
+const CHUNK: usize = 1 << 12;
 
 /// No new value is nearer than this to the smallest neighbour: three equal ones give 1/√3.
 const LEAST_STEP: f32 = 0.577;
@@ -13,42 +18,35 @@ const LEAST_STEP: f32 = 0.577;
 /// what is filled in is known to be no less. Signs stay with their samples.
 ///
 /// First order: the error is some tenths of a cell near the band and grows with the distance, about as h log(1/h). Cost: eight times
-/// some nanoseconds a sample, on one thread.
-pub(super) fn sweep(values: &mut [f32], dimensions: [u32; 3], band: f32, exec: &Exec) -> Result<(), Stop> {
+/// some nanoseconds a sample.
+pub(super) fn sweep(values: &mut [f32], dimensions: [u32; 3], band: f32, exec: &Exec) -> Result<(), ConvertError> {
     let [columns, rows, slabs] = dimensions.map(|count| count as usize);
-    let slab_len = columns * rows;
-    // The smaller of both neighbours along y, and along z, for a row.
-    let (mut along_y, mut along_z) = (vec![FAR; columns], vec![FAR; columns]);
     for order in 0..8u32 {
-        for step in 0..slabs {
-            exec.check()?;
-            exec.progress((f64::from(order) + step as f64 / slabs as f64) / 8.0);
-            let k = if order & 4 == 0 { step } else { slabs - 1 - step };
-            for step in 0..rows {
-                let j = if order & 2 == 0 { step } else { rows - 1 - step };
-                let start = k * slab_len + j * columns;
-                let row = |exists: bool, start: usize| exists.then(|| &values[start..start + columns]);
-                let beside = [row(j > 0, start.wrapping_sub(columns)), row(j + 1 < rows, start + columns)];
-                least_of(&mut along_y, beside);
-                let beside = [row(k > 0, start.wrapping_sub(slab_len)), row(k + 1 < slabs, start + slab_len)];
-                least_of(&mut along_z, beside);
-                let row = &mut values[start..start + columns];
-                if order & 1 == 0 {
-                    sweep_row(row, &along_y, &along_z, band, 0..columns);
-                } else {
-                    sweep_row(row, &along_y, &along_z, band, (0..columns).rev());
-                }
+        let exec = exec.part(f64::from(order) / 8.0, f64::from(order + 1) / 8.0);
+        let sweep = Sweep { counts: [rows, slabs], backward: [order & 2 != 0, order & 4 != 0] };
+        sweep.run(values.chunks_mut(columns), (CHUNK / columns).max(1), &exec, |_, row, beside| {
+            // The smaller of both neighbours along y, and along z.
+            let [along_y, along_z] = [0, 1].map(|axis| {
+                let mut least = vec![FAR; columns];
+                least_of(&mut least, [beside.before[axis], beside.after[axis]]);
+                least
+            });
+            if order & 1 == 0 {
+                sweep_row(row, &along_y, &along_z, band, 0..columns);
+            } else {
+                sweep_row(row, &along_y, &along_z, band, (0..columns).rev());
             }
-        }
+            Ok(())
+        })?;
     }
     Ok(())
 }
 
 /// The smaller magnitude of two rows beside one, at each place.
-fn least_of(least: &mut [f32], beside: [Option<&[f32]>; 2]) {
+fn least_of(least: &mut [f32], beside: [Option<&&mut [f32]>; 2]) {
     least.fill(FAR);
     for row in beside.into_iter().flatten() {
-        for (least, value) in least.iter_mut().zip(row) {
+        for (least, value) in least.iter_mut().zip(row.iter()) {
             let value = value.abs();
             *least = if value < *least { value } else { *least };
         }

@@ -53,8 +53,7 @@ impl Octree {
     fn combined(&self, other: &Self, full: fn(bool, bool) -> bool, exec: &Exec) -> Result<Self, ConvertError> {
         exec.check()?;
         if self.lattice != other.lattice {
-            let (first, second) = (self.lattice.dimensions(), other.lattice.dimensions());
-            return Err(VoxelError::Lattices { first, second }.into());
+            return Err(VoxelError::Lattices(Box::new([self.lattice, other.lattice])).into());
         }
         let mut growing = Growing::new(exec);
         let walk = Walk { trees: [self, other], full };
