@@ -10,6 +10,7 @@ mod dual;
 mod dual_contouring;
 mod error;
 mod field_slabs;
+mod growth;
 mod inside_bits;
 mod iso_value;
 mod lattice;

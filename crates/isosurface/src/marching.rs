@@ -9,10 +9,11 @@ use std::ops::Range;
 use multiversion::multiversion;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::parallel::{fill_chunks, map_chunks};
-use shapeloom_core::{ConvertError, Exec, OverBudget, Reservation, Stop};
+use shapeloom_core::{ConvertError, Exec, Stop};
 use shapeloom_mesh::MeshError;
 
 use crate::cell_topology::CellTopology;
+use crate::growth::grow;
 use crate::lattice_bits::LatticeBits;
 use crate::lattice_vertices::{EdgeRow, Samples, Site, bits_below, next_bits};
 use crate::pattern::Pattern;
@@ -471,30 +472,6 @@ impl Vertices<'_> {
         });
         normals[at] = self.site.normal(corners.sum(), DVec3::Z);
     }
-}
-
-/// Makes room for so many elements in all when a part of the lattice is done: first taken from the budget, and for as many as there
-/// will be if it goes on like this, where the budget has that much. What grows often is copied often.
-fn grow<T>(
-    vector: &mut Vec<T>,
-    needed: usize,
-    part: f64,
-    memory: &mut Vec<Reservation>,
-    exec: &Exec,
-) -> Result<(), OverBudget> {
-    let held = vector.capacity();
-    if needed > held {
-        let expected = if part < 1.0 { (needed as f64 * 1.02 / part) as usize } else { needed };
-        let expected = expected.clamp(needed, 16 * needed);
-        let reserve = |capacity: usize| exec.reserve_elements((capacity - held) as u64, size_of::<T>());
-        let (capacity, reserved) = match reserve(expected) {
-            Ok(reserved) => (expected, reserved),
-            Err(_) => (needed, reserve(needed)?),
-        };
-        memory.push(reserved);
-        vector.reserve_exact(capacity - vector.len());
-    }
-    Ok(())
 }
 
 /// Makes counts numbers, from `total` on: those of the first vertices of each row. Adds the first of each plane to `starts`.
