@@ -4,7 +4,7 @@ use shapeloom_core::{Exec, OverBudget, Reservation};
 
 /// How much more than what is expected is made room for. Where the parts of a lattice differ by less, nothing is copied; room that
 /// is not written to is given back, and was never more than addresses.
-const SPARE: f64 = 1.25;
+const SPARE: f64 = 1.06;
 
 /// The largest step: a surface may begin with a single triangle, or end with the first layer.
 const LARGEST_STEP: usize = 16;

@@ -8,6 +8,7 @@ mod cell_topology;
 mod cube_cycles;
 mod dual;
 mod dual_contouring;
+mod edge_batch;
 mod error;
 mod field_slabs;
 mod growth;

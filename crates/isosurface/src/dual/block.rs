@@ -7,7 +7,7 @@ use shapeloom_core::glam::{DMat3, DVec3};
 use shapeloom_core::{Affine, ConvertError, Exec, Reservation};
 use shapeloom_mesh::MeshError;
 
-use super::batch::{BATCH, Batch, gradients, means};
+use super::batch::{BATCH, Batch, directions, gradients, means, place};
 use super::cell::{Cell, Surroundings};
 use super::cell_layer::{CellLayer, SplitCell};
 use super::cell_tables::{PIECES, SIMPLE, double_face};
@@ -208,23 +208,21 @@ impl Collector {
             gradients(&batch.corners, &batch.places, &mut batch.gradients);
         }
         let pad = plan.frame.pad as f64;
-        let Affine { linear, translation } = plan.placement;
-        let z = self.layer as f64 - pad;
+        let from = DVec3::new(-pad, -pad, self.layer as f64 - pad);
+        place(batch, from, &plan.placement.linear, plan.placement.translation);
+        let first = made.positions.len() as u32;
+        let [x, y, z] = &batch.positions;
+        made.positions.extend((0..batch.len).map(|n| DVec3::new(x[n], y[n], z[n])));
+        if plan.normals {
+            directions(batch, &plan.cofactors);
+            let [x, y, z] = &batch.normals;
+            made.normals.extend((0..batch.len).map(|n| [x[n], y[n], z[n]]));
+        }
         for n in 0..batch.len {
-            let [column, row] = batch.cells[n];
-            let [x, y, dz] = [0, 1, 2].map(|axis| f64::from(batch.places[axis][n]));
-            let (x, y) = (f64::from(column) - pad + x, f64::from(row) - pad + y);
-            let position = linear.x_axis * x + linear.y_axis * y + linear.z_axis * (z + dz) + translation;
-            let vertex = made.positions.len() as u32;
-            made.positions.push(position);
-            let mut special = everywhere || !SIMPLE[(batch.insides[n] & 255) as usize] || !self.tame[row as usize];
-            if plan.normals {
-                let gradient = DVec3::from([0, 1, 2].map(|axis| f64::from(batch.gradients[axis][n])));
-                let normal = (plan.cofactors * gradient).normalize_or_zero();
-                special |= !normal.is_finite() || normal == DVec3::ZERO;
-                made.normals.push(normal.to_array());
-            }
-            if special {
+            let [column, row] = [batch.cells[0][n], batch.cells[1][n]];
+            let simple = SIMPLE[(batch.insides[n] & 255) as usize] && self.tame[row as usize];
+            if everywhere || !simple || plan.normals && !batch.sloped[n] {
+                let vertex = first + n as u32;
                 self.special.push(Special { key: batch.keys[n], cell: [column, row], vertex });
             }
         }
@@ -280,7 +278,8 @@ fn collect(
                     collector.batch.corners[2 * r][n] = low * sign;
                     collector.batch.corners[2 * r + 1][n] = high * sign;
                 }
-                collector.batch.cells[n] = [column as u32, row as u32];
+                collector.batch.cells[0][n] = column as u32;
+                collector.batch.cells[1][n] = row as u32;
                 collector.batch.keys[n] = f as u64 * 64 + u64::from(bit);
                 collector.batch.len = n + 1;
                 if n + 1 == BATCH {
