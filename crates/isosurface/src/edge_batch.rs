@@ -65,18 +65,16 @@ impl EdgeBatch {
         gradients: Option<[[f64; 3]; 2]>,
     ) {
         let at = self.len % BATCH;
-        for end in 0..2 {
-            self.samples[end][at] = samples[end];
+        for (to, sample) in self.samples.iter_mut().zip(samples) {
+            to[at] = sample;
         }
-        for axis in 0..3 {
-            self.from[axis][at] = from[axis] as i32;
+        for (to, from) in self.from.iter_mut().zip(from) {
+            to[at] = from as i32;
         }
         self.directions[at] = if starts_inside { i32::from(direction) } else { -i32::from(direction) };
         if let Some(gradients) = gradients {
-            for end in 0..2 {
-                for axis in 0..3 {
-                    self.gradients[end][axis][at] = gradients[end][axis];
-                }
+            for (to, slope) in self.gradients.as_flattened_mut().iter_mut().zip(gradients.as_flattened()) {
+                to[at] = *slope;
             }
         }
         self.len += 1;

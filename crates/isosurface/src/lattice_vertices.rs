@@ -214,6 +214,8 @@ impl EdgeRow<'_> {
                 let column = i.wrapping_sub(margin);
                 match (from.get(column), to.get(column.wrapping_add(dx))) {
                     (Some(&a), Some(&b)) if site.tame => {
+                        // Not by `map`: closures are not compiled for the wider vectors of the caller.
+                        #[allow(clippy::manual_map)]
                         let gradients = match &around {
                             Some((start, end)) => Some([start.gradient(column), end.gradient(column + dx)]),
                             None => None,

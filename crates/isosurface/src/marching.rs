@@ -13,7 +13,7 @@ use shapeloom_mesh::MeshError;
 
 use crate::cell_topology::CellTopology;
 use crate::edge_batch::EdgeBatch;
-use crate::growth::grow;
+use crate::growth::{give_back, grow};
 use crate::lattice_bits::LatticeBits;
 use crate::lattice_vertices::{EdgeRow, PLACES, Samples, Site, Vertices, bits_below, next_bits};
 use crate::pattern::Pattern;
@@ -292,9 +292,9 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
                 return Err(MeshError::TooMany { kind: "wedges", found: wedges }.into());
             }
         }
-        surface.positions.shrink_to_fit();
-        surface.triangles.shrink_to_fit();
-        surface.normals.iter_mut().for_each(Vec::shrink_to_fit);
+        give_back(&mut surface.positions);
+        give_back(&mut surface.triangles);
+        surface.normals.iter_mut().for_each(give_back);
         surface.working_bytes = size_of_val(rows.as_slice()) as u64;
         Ok(surface)
     }

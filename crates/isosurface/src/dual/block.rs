@@ -15,7 +15,7 @@ use super::quads::{Around, add_quads};
 use super::sign_slice::{Frame, SignSlice};
 use super::slab_ring::{KEPT, SlabRing};
 use super::{Placed, VertexRule};
-use crate::growth::grow;
+use crate::growth::{give_back, grow};
 use crate::{Inside, Level, Slabs};
 
 /// What does not change from layer to layer.
@@ -153,9 +153,9 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
         std::mem::swap(&mut below, &mut layer);
     }
     made.unused.sort_unstable();
-    made.positions.shrink_to_fit();
-    made.normals.shrink_to_fit();
-    made.triangles.shrink_to_fit();
+    give_back(&mut made.positions);
+    give_back(&mut made.normals);
+    give_back(&mut made.triangles);
     Ok(made)
 }
 
