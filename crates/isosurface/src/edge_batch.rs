@@ -158,3 +158,56 @@ fn place(batch: &mut EdgeBatch, site: &Site, normals: bool) {
         nz[n] = w * by_length;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Inside, Lattice, Level};
+    use shapeloom_core::Affine;
+    use shapeloom_core::glam::DMat3;
+
+    /// Each vertex beside the formula of its line, computed here another way.
+    #[test]
+    fn vertices_lie_where_their_edges_reach_the_level() {
+        let linear =
+            DMat3::from_cols(DVec3::new(0.3, 0.1, 0.0), DVec3::new(-0.05, 0.4, 0.0), DVec3::new(0.0, 0.1, -0.5));
+        let placement = Affine { linear, translation: DVec3::new(5.0, -3.0, 7.0) };
+        let lattice = Lattice::try_new([1000; 3], placement).unwrap();
+        let level = Level { iso: 0.25, inside: Inside::Above };
+        let site = Site::new(&lattice, level, 0, true);
+        let mut batch = EdgeBatch::new();
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let mut expected = Vec::new();
+        for n in 0..300usize {
+            let direction = (n % 7 + 1) as u8;
+            let along = DVec3::new(f64::from(direction & 1), f64::from(direction >> 1 & 1), f64::from(direction >> 2));
+            let from = [n, 2 * n, 999 - n];
+            if n % 50 == 49 {
+                batch.add_own([n as f64; 3], [0.0, 0.0, 1.0]);
+                expected.push((DVec3::splat(n as f64), DVec3::Z));
+            } else {
+                let rises = n % 3 == 0;
+                let (low, high) = (0.25 - 0.01 * (n + 1) as f32, 0.75);
+                let ends = if rises { [low, high] } else { [high, low] };
+                let part = (0.25 - f64::from(ends[0])) / (f64::from(ends[1]) - f64::from(ends[0]));
+                let at = placement.point(DVec3::from(from.map(|at| at as f64)) + along * part);
+                // Every fifth has no slope: its normal is along the edge.
+                let slopes = if n % 5 == 0 { [DVec3::ZERO; 2] } else { [DVec3::new(1.0, -0.5, n as f64), DVec3::ONE] };
+                let slope = slopes[0] * (1.0 - part) + slopes[1] * part;
+                let outward = if slope != DVec3::ZERO { -slope } else { along * if rises { -1.0 } else { 1.0 } };
+                expected.push((at, placement.normal(outward)));
+                batch.add(ends, from, direction, !rises, Some(slopes.map(|slope| slope.to_array())));
+            }
+            if batch.is_full() {
+                batch.flush(&site, &mut positions, Some(&mut normals));
+            }
+        }
+        batch.flush(&site, &mut positions, Some(&mut normals));
+        assert_eq!((positions.len(), normals.len()), (300, 300));
+        for (n, (position, normal)) in expected.into_iter().enumerate() {
+            // Coordinates are below a thousand, normals of length 1.
+            assert!((DVec3::from(positions[n]) - position).length() < 1e-12, "{n}: {:?} {position}", positions[n]);
+            assert!((DVec3::from(normals[n]) - normal).length() < 1e-12, "{n}: {:?} {normal}", normals[n]);
+        }
+    }
+}

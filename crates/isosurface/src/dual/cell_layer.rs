@@ -138,3 +138,61 @@ fn with_quads(frame: &Frame, [word, row, k]: [usize; 3], lower: &[u64], upper: &
     let [here, next] = [others[0] & across[0], others[1] & across[1]];
     along | here | here >> 1 | next << 63
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Inside, Level};
+
+    /// Whether a crossed edge of the cell has four cells around it, edge by edge.
+    fn has_quad(inside: &dyn Fn([usize; 3]) -> bool, size: [usize; 3], cell: [usize; 3]) -> bool {
+        (0..3).any(|axis| {
+            let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+            (0..4).any(|side| {
+                let mut from = cell;
+                from[b] += side & 1;
+                from[c] += side >> 1;
+                let mut to = from;
+                to[axis] += 1;
+                let inner = |axis: usize| from[axis] > 0 && from[axis] + 1 < size[axis];
+                inner(b) && inner(c) && inside(from) != inside(to)
+            })
+        })
+    }
+
+    #[test]
+    fn cells_at_an_open_border_have_vertices_where_quads_use_them() {
+        let level = Level { iso: 0.0, inside: Inside::Below };
+        let mut state = 1u32;
+        for columns in [2u32, 3, 5, 63, 64, 65, 66, 128, 129, 130] {
+            for (rows, slabs, sparse) in [(2, 2, 2), (4, 4, 2), (5, 3, 11), (3, 2, 3)] {
+                let frame = Frame::new([columns, rows, slabs], false);
+                let size = [columns, rows, slabs].map(|count| count as usize);
+                let sample = |_| {
+                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    if (state >> 16).is_multiple_of(sparse) { -1.0f32 } else { 1.0 }
+                };
+                let samples: Vec<f32> = (0..columns * rows * slabs).map(sample).collect();
+                let inside = |[i, j, k]: [usize; 3]| samples[(k * size[1] + j) * size[0] + i] < 0.0;
+                let mut slices = vec![SignSlice::default(); size[2]];
+                for (slice, samples) in slices.iter_mut().zip(samples.chunks(size[0] * size[1])) {
+                    slice.fill(samples, level, &frame);
+                }
+                let mut layer = CellLayer::default();
+                for k in 0..size[2] - 1 {
+                    let count = layer.find(&frame, k, &slices[k], &slices[k + 1]);
+                    let mut found = 0;
+                    for (row, i) in (0..size[1] - 1).flat_map(|row| (0..frame.stride * 64).map(move |i| (row, i))) {
+                        let expected = i + 1 < size[0] && has_quad(&inside, size, [i, row, k]);
+                        let active = layer.active[row * frame.stride + i / 64] >> (i % 64) & 1 == 1;
+                        let within =
+                            i > 0 && row > 0 && k > 0 && i + 2 < size[0] && row + 2 < size[1] && k + 2 < size[2];
+                        assert!(active == expected || within, "{size:?}: {i} {row} {k}");
+                        found += u64::from(active);
+                    }
+                    assert_eq!(found, count);
+                }
+            }
+        }
+    }
+}
