@@ -1,8 +1,8 @@
 //! Marching over the cells of a lattice: what cubes and tetrahedra have in common.
 //!
-//! First every sample becomes a bit. From the bits follow, by operations on whole words, how many vertices each row of edges and how
-//! many triangles each layer of cells has, hence the numbers of all vertices. Then blocks of layers write their vertices and
-//! triangles, at the same time, to where they belong.
+//! First every sample becomes a bit. From the bits follow, by operations on whole words, how many vertices each row of edges has,
+//! hence the numbers of all vertices. Then vertices and triangles are written in order: by one thread to where they stay, by several
+//! in blocks of layers that are put behind each other.
 
 use std::ops::Range;
 
