@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Map, json};
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Convert, Exec, Options};
-use shapeloom_isosurface::{Lattice, MarchingCubes, MarchingTetrahedra, Topology};
+use shapeloom_isosurface::{Border, Lattice, MarchingCubes, MarchingTetrahedra, Topology};
 use shapeloom_mesh::TriMesh;
 use shapeloom_voxels::{Quantity, Samples, VoxelGrid};
 
@@ -27,6 +27,11 @@ pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
         let cubes = MarchingCubes::new();
         let with_normals = MarchingCubes { normals: true, ..cubes.clone() };
         let exact = MarchingCubes { topology: Topology::Exact, ..cubes.clone() };
+        // Peers leave the border open: those two are the same work.
+        let open = MarchingCubes { border: Border::Open, ..cubes.clone() };
+        let open_with_normals = MarchingCubes { border: Border::Open, ..with_normals.clone() };
+        outcomes.push(measured(name, ", open", grid, &open, setting)?);
+        outcomes.push(measured(name, ", open, with normals", grid, &open_with_normals, setting)?);
         outcomes.push(measured(name, "", grid, &cubes, setting)?);
         outcomes.push(measured(name, " with normals", grid, &with_normals, setting)?);
         outcomes.push(measured(name, " with exact topology", grid, &exact, setting)?);

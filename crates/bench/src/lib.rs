@@ -143,6 +143,8 @@ impl Task {
                 let volume = if input.contains("blend") { "b.mc256_blend" } else { "b.mc256_gyroid" };
                 if input.contains(".f32: open") { vec![volume.into()] } else { Vec::new() }
             }
+            // Other borders, other topology: other work.
+            Self::Isosurface if !input.contains("cubes, open") => Vec::new(),
             Self::Isosurface if input.contains("blend") => vec!["b.mc256_blend".into()],
             Self::Isosurface => vec!["b.mc256_gyroid".into()],
             Self::MeshToSdf => vec!["o.mesh1m_to_sdf256.narrow3".into()],

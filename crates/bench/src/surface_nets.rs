@@ -1,5 +1,7 @@
-//! Surface nets of volumes of 256³ samples.
+//! Surface nets of volumes of 256³ samples, beside the crate fast-surface-nets on the same samples.
 
+use fast_surface_nets::ndshape::RuntimeShape;
+use fast_surface_nets::{SurfaceNetsBuffer, surface_nets};
 use serde_json::{Map, json};
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Convert, Exec};
@@ -13,15 +15,37 @@ use crate::{Outcome, Setting, measure};
 pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
     let mut outcomes = Vec::new();
     for (name, volume) in volumes(setting)? {
+        let bare = bare(&name, &volume, setting)?;
+        let of_bare = bare.times.cpu;
+        outcomes.push(bare);
         let nets = ManifoldSurfaceNets { border: Border::Open, ..ManifoldSurfaceNets::new() };
         let with_normals = ManifoldSurfaceNets { normals: true, ..nets.clone() };
         for (way, nets) in [("open", nets), ("open, normals", with_normals), ("closed", ManifoldSurfaceNets::new())] {
             let work = || nets.convert_with(&volume, &Exec::default()).map_err(|error| error.to_string());
             let (converted, times) = measure::fastest(setting.runs, work)?;
-            outcomes.push(Outcome { input: format!("{name}: {way}"), times, figures: figures(&converted.value)? });
+            let mut figures = figures(&converted.value)?;
+            figures.insert("cpu_of_fast_surface_nets_over_ours".into(), json!(of_bare / times.cpu));
+            outcomes.push(Outcome { input: format!("{name}: {way}"), times, figures });
         }
     }
     Ok(outcomes)
+}
+
+/// The crate fast-surface-nets by itself, into a buffer of its own for each run: positions and normals in single precision, which it
+/// always makes, an open border, no look at its samples before.
+fn bare(name: &str, volume: &VoxelGrid, setting: &Setting) -> Result<Outcome, String> {
+    let dimensions = volume.lattice().dimensions();
+    let shape = RuntimeShape::<u32, 3>::new(dimensions);
+    let Samples::F32(samples) = volume.samples() else { return Err(format!("{name}: not single precision")) };
+    let (buffer, times) = measure::fastest(setting.runs, || {
+        let mut buffer = SurfaceNetsBuffer::default();
+        surface_nets(samples, &shape, [0; 3], dimensions.map(|count| count - 1), &mut buffer);
+        Ok(buffer)
+    })?;
+    let mut figures = Map::new();
+    figures.insert("vertices".into(), json!(buffer.positions.len()));
+    figures.insert("triangles".into(), json!(buffer.indices.len() / 3));
+    Ok(Outcome { input: format!("{name}: fast-surface-nets alone"), times, figures })
 }
 
 /// The volumes of the peers, which are 256³ distances on the cube from -1.5 to 1.5; else a small one of a formula.

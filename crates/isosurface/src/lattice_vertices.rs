@@ -2,15 +2,16 @@
 
 use shapeloom_core::glam::{DMat3, DVec3};
 
+use crate::edge_batch::EdgeBatch;
 use crate::{Inside, Lattice, Level};
 
 /// Where a lattice is, and how normals are mapped from it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Site {
-    origin: DVec3,
-    steps: [DVec3; 3],
+    pub(crate) origin: DVec3,
+    pub(crate) steps: [DVec3; 3],
     /// Maps gradients with respect to lattice coordinates to outward normals, but for their length.
-    normals: DMat3,
+    pub(crate) normals: DMat3,
     pub(crate) level: Level,
     /// Whether all samples are finite and not large, as far as they were read.
     tame: bool,
@@ -73,37 +74,56 @@ impl<'a> Samples<'a> {
         self.row(j, above)?.get(i).copied()
     }
 
-    /// The gradient at a sample with respect to lattice coordinates, by central differences, at the border by one-sided ones.
+    /// A row of samples and those around it.
     #[inline(always)]
+    fn around(&self, j: usize, above: usize) -> Option<RowAround<'a>> {
+        let own = self.row(j, above)?;
+        let beside = [j.checked_sub(1).and_then(|j| self.row(j, above)), self.row(j + 1, above)];
+        let slabs = [above.checked_sub(1), Some(above + 1)].map(|at| match at {
+            Some(at) => self.row(j, at),
+            // The slab before the one that rows are counted from.
+            None => self.slabs[0]?.get(j * self.columns..(j + 1) * self.columns),
+        });
+        Some(RowAround::new(own, [beside, slabs]))
+    }
+
+    /// The gradient at a sample with respect to lattice coordinates, by central differences, at the border by one-sided ones.
     pub(crate) fn gradient(&self, i: usize, j: usize, above: usize) -> DVec3 {
-        let at = j * self.columns + i;
-        let Some(slab) = self.slabs[1 + above] else { return DVec3::ZERO };
-        let columns = self.columns;
-        let own = slab[at];
-        let x = difference(
-            if i > 0 { Some(slab[at - 1]) } else { None },
-            own,
-            if i + 1 < columns { Some(slab[at + 1]) } else { None },
-        );
-        let y = difference(
-            if j > 0 { Some(slab[at - columns]) } else { None },
-            own,
-            if j + 1 < self.rows { Some(slab[at + columns]) } else { None },
-        );
-        let [before, behind] = [self.slabs[above], self.slabs[2 + above]];
-        let z = difference(before.map(|slab| slab[at]), own, behind.map(|slab| slab[at]));
-        DVec3::new(x, y, z)
+        self.around(j, above).map_or(DVec3::ZERO, |around| DVec3::from(around.gradient(i)))
     }
 }
 
-/// The slope at the middle one of three samples, of which the first and the last may be missing.
-#[inline(always)]
-fn difference(low: Option<f32>, own: f32, high: Option<f32>) -> f64 {
-    match (low, high) {
-        (Some(low), Some(high)) => (f64::from(high) - f64::from(low)) * 0.5,
-        (None, Some(high)) => f64::from(high) - f64::from(own),
-        (Some(low), None) => f64::from(own) - f64::from(low),
-        (None, None) => 0.0,
+/// A row of samples with those next to it: itself where there is none.
+#[derive(Clone, Copy, Debug)]
+struct RowAround<'a> {
+    own: &'a [f32],
+    /// Before and behind along `y`, then along `z`.
+    beside: [[&'a [f32]; 2]; 2],
+    /// What differences along these are multiplied by: a half, or one at the border.
+    factors: [f64; 2],
+}
+
+impl<'a> RowAround<'a> {
+    #[inline(always)]
+    fn new(own: &'a [f32], beside: [[Option<&'a [f32]>; 2]; 2]) -> Self {
+        let factor = |[low, high]: [Option<&[f32]>; 2]| if low.is_some() && high.is_some() { 0.5 } else { 1.0 };
+        let [y, z] = beside;
+        let rows = |[low, high]: [Option<&'a [f32]>; 2]| [low.unwrap_or(own), high.unwrap_or(own)];
+        Self { own, beside: [rows(y), rows(z)], factors: [factor(y), factor(z)] }
+    }
+
+    /// The gradient at a sample by differences.
+    #[inline(always)]
+    fn gradient(&self, i: usize) -> [f64; 3] {
+        let last = self.own.len() - 1;
+        let factor = if i > 0 && i < last { 0.5 } else { 1.0 };
+        let slope = |low: f32, high: f32, factor: f64| (f64::from(high) - f64::from(low)) * factor;
+        let [[y0, y1], [z0, z1]] = self.beside;
+        [
+            slope(self.own[i.saturating_sub(1)], self.own[(i + 1).min(last)], factor),
+            slope(y0[i], y1[i], self.factors[0]),
+            slope(z0[i], z1[i], self.factors[1]),
+        ]
     }
 }
 
@@ -152,59 +172,156 @@ impl EdgeRow<'_> {
         count
     }
 
-    /// Writes the vertices of a row of edges that start at samples `(.., j, k)`, counted with the margin.
+    /// Adds the vertices of a row of edges that start at samples `(.., j, k)`, counted with the margin.
     #[inline(always)]
     pub(crate) fn vertices<const DIRECTION: u8>(
         &self,
-        site: &Site,
         samples: &Samples<'_>,
         [j, k]: [usize; 2],
-        positions: &mut [[f64; 3]],
-        mut normals: Option<&mut [[f64; 3]]>,
+        vertices: &mut Vertices<'_>,
     ) {
         let [dx, dy, dz] = [0, 1, 2].map(|axis| usize::from(DIRECTION >> axis & 1));
-        let margin = site.margin;
+        let (site, margin) = (vertices.site, vertices.site.margin);
         // Rows of the margin are beyond every row of samples, also below 0.
         let (row, slab) = (j.wrapping_sub(margin), k.wrapping_sub(margin));
         let from = samples.row(row, 0).unwrap_or(&[]);
         let to = samples.row(row.wrapping_add(dy), dz).unwrap_or(&[]);
-        let mut at = 0;
-        for w in 0..self.own.len() {
-            let mut crossed = self.crossed(DIRECTION, w);
-            while crossed != 0 {
-                let i = 64 * w + crossed.trailing_zeros() as usize;
-                let starts_inside = self.own[w] >> (i % 64) & 1 == 1;
-                crossed &= crossed - 1;
-                let column = i.wrapping_sub(margin);
-                let ends = (from.get(column), to.get(column.wrapping_add(dx)));
-                let (position, gradient) = if let (Some(&a), Some(&b)) = ends {
-                    let part = if site.tame { site.level.crossing_of_finite(a, b) } else { site.level.crossing(a, b) };
-                    let x = if dx == 1 { column as f64 + part } else { column as f64 };
-                    let y = if dy == 1 { row as f64 + part } else { row as f64 };
-                    let z = if dz == 1 { slab as f64 + part } else { slab as f64 };
-                    let position = site.place(x, y, z);
-                    let mut gradient = DVec3::ZERO;
-                    if normals.is_some() {
-                        let start = samples.gradient(column, row, 0);
-                        let end = samples.gradient(column + dx, row + dy, dz);
-                        gradient = start + (end - start) * part;
-                    }
-                    (position, gradient)
-                } else {
-                    // Of an edge to the margin the end that is inside.
-                    let [x, y, z] = match starts_inside {
-                        true => [column, row, slab],
-                        false => [column.wrapping_add(dx), row.wrapping_add(dy), slab.wrapping_add(dz)],
-                    };
-                    (site.place(x as f64, y as f64, z as f64), DVec3::ZERO)
-                };
-                positions[at] = position;
-                if let Some(normals) = &mut normals {
-                    let along = DVec3::new(dx as f64, dy as f64, dz as f64);
-                    normals[at] = site.normal(gradient, if starts_inside { along } else { -along });
+        let around = match vertices.normals.is_some() {
+            true => samples.around(row, 0).zip(samples.around(row.wrapping_add(dy), dz)),
+            false => None,
+        };
+        for first in (0..self.own.len()).step_by(WORDS) {
+            let mut count = 0;
+            for w in first..(first + WORDS).min(self.own.len()) {
+                let mut crossed = self.crossed(DIRECTION, w);
+                let end = count + crossed.count_ones() as usize;
+                // Most words have few: these are written without asking how many there are, which would be guessed wrong.
+                for _ in 0..SURE {
+                    vertices.places[count] = 64 * w + crossed.trailing_zeros() as usize;
+                    crossed &= crossed.wrapping_sub(1);
+                    count += 1;
                 }
-                at += 1;
+                while crossed != 0 {
+                    vertices.places[count] = 64 * w + crossed.trailing_zeros() as usize;
+                    crossed &= crossed - 1;
+                    count += 1;
+                }
+                count = end;
+            }
+            for at in 0..count {
+                let i = vertices.places[at];
+                let starts_inside = self.own[i / 64] >> (i % 64) & 1 == 1;
+                let column = i.wrapping_sub(margin);
+                match (from.get(column), to.get(column.wrapping_add(dx))) {
+                    (Some(&a), Some(&b)) if site.tame => {
+                        // Not by `map`: closures are not compiled for the wider vectors of the caller.
+                        #[allow(clippy::manual_map)]
+                        let gradients = match &around {
+                            Some((start, end)) => Some([start.gradient(column), end.gradient(column + dx)]),
+                            None => None,
+                        };
+                        vertices.batch.add([a, b], [column, row, slab], DIRECTION, starts_inside, gradients);
+                    }
+                    ends => vertices.add_own(ends, samples, [column, row, slab], DIRECTION, starts_inside),
+                }
+                if vertices.batch.is_full() {
+                    vertices.flush();
+                }
             }
         }
+    }
+}
+
+/// How many words of edges are looked at together.
+const WORDS: usize = 4;
+
+/// So many edges of each word are written down in any case: few have more.
+const SURE: usize = 4;
+
+/// Room for the places of all of them.
+pub(crate) const PLACES: usize = 64 * WORDS + SURE;
+
+/// Where vertices go to, and those that are on the way.
+pub(crate) struct Vertices<'a> {
+    pub(crate) site: &'a Site,
+    pub(crate) batch: Box<EdgeBatch>,
+    /// Places of crossed edges in some words of a row.
+    pub(crate) places: [usize; PLACES],
+    /// The number of the vertex at the start of `positions`.
+    pub(crate) first: u32,
+    pub(crate) positions: &'a mut Vec<[f64; 3]>,
+    pub(crate) normals: Option<&'a mut Vec<[f64; 3]>>,
+}
+
+impl Vertices<'_> {
+    /// Writes the vertices that are on the way.
+    pub(crate) fn flush(&mut self) {
+        self.batch.flush(self.site, self.positions, self.normals.as_deref_mut());
+    }
+
+    /// Makes room for vertices that are written later.
+    pub(crate) fn skip(&mut self, count: u32) {
+        for _ in 0..count {
+            self.batch.add_own([0.0; 3], [0.0; 3]);
+            if self.batch.is_full() {
+                self.flush();
+            }
+        }
+    }
+
+    /// Adds the vertex of an edge by itself: to the margin, or between samples that may be anything.
+    #[cold]
+    fn add_own(
+        &mut self,
+        ends: (Option<&f32>, Option<&f32>),
+        samples: &Samples<'_>,
+        [column, row, slab]: [usize; 3],
+        direction: u8,
+        starts_inside: bool,
+    ) {
+        let site = self.site;
+        let [dx, dy, dz] = [0, 1, 2].map(|axis| usize::from(direction >> axis & 1));
+        let (position, gradient) = if let (Some(&a), Some(&b)) = ends {
+            let part = site.level.crossing(a, b);
+            let along = |from: usize, step: usize| if step == 1 { from as f64 + part } else { from as f64 };
+            let position = site.place(along(column, dx), along(row, dy), along(slab, dz));
+            let mut gradient = DVec3::ZERO;
+            if self.normals.is_some() {
+                let start = samples.gradient(column, row, 0);
+                let end = samples.gradient(column + dx, row + dy, dz);
+                gradient = start + (end - start) * part;
+            }
+            (position, gradient)
+        } else {
+            // Of an edge to the margin the end that is inside.
+            let [x, y, z] = match starts_inside {
+                true => [column, row, slab],
+                false => [column.wrapping_add(dx), row.wrapping_add(dy), slab.wrapping_add(dz)],
+            };
+            (site.place(x as f64, y as f64, z as f64), DVec3::ZERO)
+        };
+        let mut normal = [0.0; 3];
+        if self.normals.is_some() {
+            let along = DVec3::new(dx as f64, dy as f64, dz as f64);
+            normal = site.normal(gradient, if starts_inside { along } else { -along });
+        }
+        self.batch.add_own(position, normal);
+    }
+
+    /// Writes a vertex inside a cell, for which room was made.
+    pub(crate) fn write_inner(&mut self, samples: &Samples<'_>, cell: [usize; 3], number: u32, [x, y, z]: [f64; 3]) {
+        let margin = self.site.margin as f64;
+        let at = (number - self.first) as usize;
+        let [i, j, k] = cell.map(|start| start as f64 - margin);
+        self.positions[at] = self.site.place(i + x, j + y, k + z);
+        let Some(normals) = self.normals.as_deref_mut() else { return };
+        let [i, j] = [cell[0], cell[1]].map(|start| start.wrapping_sub(self.site.margin));
+        let corners = (0..8usize).filter_map(|corner| {
+            let (column, row) = (i.wrapping_add(corner & 1), j.wrapping_add(corner >> 1 & 1));
+            samples.get(column, row, corner >> 2)?;
+            let part = |bit: usize, x: f64| if corner >> bit & 1 == 1 { x } else { 1.0 - x };
+            Some(samples.gradient(column, row, corner >> 2) * (part(0, x) * part(1, y) * part(2, z)))
+        });
+        normals[at] = self.site.normal(corners.sum(), DVec3::Z);
     }
 }

@@ -90,13 +90,6 @@ impl Level {
         if part.is_finite() && a.is_finite() && b.is_finite() { part.clamp(0.0, 1.0) } else { 0.5 }
     }
 
-    /// The same between finite samples of which exactly one is inside, without looks at what they are.
-    #[inline(always)]
-    pub(crate) fn crossing_of_finite(&self, a: f32, b: f32) -> f64 {
-        let (from, to, iso) = (f64::from(a), f64::from(b), f64::from(self.iso));
-        (iso - from) / (to - from)
-    }
-
     /// The level for what was asked for, and how it was found.
     ///
     /// # Errors

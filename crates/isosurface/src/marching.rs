@@ -1,20 +1,21 @@
 //! Marching over the cells of a lattice: what cubes and tetrahedra have in common.
 //!
-//! First every sample becomes a bit. From the bits follow, by operations on whole words, how many vertices each row of edges and how
-//! many triangles each layer of cells has, hence the numbers of all vertices. Then blocks of layers write their vertices and
-//! triangles, at the same time, to where they belong.
+//! First every sample becomes a bit. From the bits follow, by operations on whole words, how many vertices each row of edges has,
+//! hence the numbers of all vertices. Then vertices and triangles are written in order: by one thread to where they stay, by several
+//! in blocks of layers that are put behind each other.
 
 use std::ops::Range;
 
 use multiversion::multiversion;
-use shapeloom_core::glam::DVec3;
-use shapeloom_core::parallel::{fill_chunks, map_chunks};
-use shapeloom_core::{ConvertError, Exec, OverBudget, Reservation, Stop};
+use shapeloom_core::parallel::{fill_chunks, map_chunks, workers};
+use shapeloom_core::{ConvertError, Exec, Stop};
 use shapeloom_mesh::MeshError;
 
 use crate::cell_topology::CellTopology;
+use crate::edge_batch::EdgeBatch;
+use crate::growth::{give_back, grow};
 use crate::lattice_bits::LatticeBits;
-use crate::lattice_vertices::{EdgeRow, Samples, Site, bits_below, next_bits};
+use crate::lattice_vertices::{EdgeRow, PLACES, Samples, Site, Vertices, bits_below, next_bits};
 use crate::pattern::Pattern;
 use crate::slab_window::SlabWindow;
 use crate::{Level, Slabs};
@@ -29,6 +30,9 @@ const WAVE_SAMPLES: usize = 1 << 20;
 /// The planes of a wave: enough for four blocks, and so many that small lattices have few waves.
 const LEAST_WAVE: usize = 16;
 const MOST_WAVE: usize = 256;
+
+/// Triangles that wait to be written together: a pattern has no more than twelve for a cell.
+const WAITING: usize = 512;
 
 /// Vertices and triangles, as they become a mesh.
 #[derive(Debug, Default)]
@@ -60,16 +64,6 @@ pub(crate) struct Marching<'a, S: ?Sized, const D: usize, const C: usize> {
     /// Whether triangles are turned around, as those of the pattern are.
     pub(crate) mirrored: bool,
     pub(crate) normals: bool,
-}
-
-/// Where a block writes to.
-struct Block<'a> {
-    first_layer: usize,
-    last_plane: usize,
-    first_vertex: u32,
-    positions: &'a mut [[f64; 3]],
-    normals: Option<&'a mut [[f64; 3]]>,
-    triangles: &'a mut [[u32; 3]],
 }
 
 /// A layer of cells and where its rows' vertices are.
@@ -159,15 +153,16 @@ impl<const D: usize, const C: usize> Layer<'_, D, C> {
             .map(|(direction, y, z)| self.rows[(self.k + z as usize) * rows + j + y as usize].edges[direction as usize])
     }
 
-    /// Writes the triangles of the layer. `special` writes those of cells that the pattern does not decide: it gets the cell, its
-    /// mask, the numbers of its vertices and the room that is left, and says how much it took.
+    /// Adds the triangles of the layer. `special` adds those of cells that the pattern does not decide: it gets the cell, its
+    /// mask, the numbers of its vertices and where to write, and says whether it did; asked only where `SPECIAL`.
     #[inline(always)]
-    fn write(
+    fn write<const SPECIAL: bool>(
         &self,
-        out: &mut [[u32; 3]],
-        mut special: impl FnMut([usize; 2], u8, &[[u32; C]; 2], &mut [[u32; 3]]) -> Option<usize>,
+        out: &mut Vec<[u32; 3]>,
+        mut special: impl FnMut([usize; 2], u8, &[[u32; C]; 2], &mut Vec<[u32; 3]>) -> bool,
     ) {
-        let mut at = 0;
+        let mut waiting = [[0; 3]; WAITING];
+        let mut count = 0;
         for j in 0..self.bits.dimensions[1] - 1 {
             let mut counters = self.counters(j);
             visit_cells(self.bits, j, self.k, |i, mask| {
@@ -176,61 +171,63 @@ impl<const D: usize, const C: usize> Layer<'_, D, C> {
                     *counter += step;
                 }
                 let numbers = [before, counters];
-                if let Some(taken) = special([i, j], mask, &numbers, &mut out[at..]) {
-                    at += taken;
+                let own = self.pattern.triangles(mask);
+                // Before a cell by itself, too: triangles are in the order of the cells.
+                if SPECIAL || count + own.len() > WAITING {
+                    out.extend_from_slice(&waiting[..count]);
+                    count = 0;
+                }
+                if SPECIAL && special([i, j], mask, &numbers, out) {
                     return;
                 }
                 let numbers = numbers.as_flattened();
-                let triangles = self.pattern.triangles(mask);
-                for (out, &[a, b, c]) in out[at..at + triangles.len()].iter_mut().zip(triangles) {
+                for (to, &[a, b, c]) in waiting[count..].iter_mut().zip(own) {
                     let (a, b, c) = (a as usize % (2 * C), b as usize % (2 * C), c as usize % (2 * C));
-                    *out = [numbers[a], numbers[b], numbers[c]];
+                    *to = [numbers[a], numbers[b], numbers[c]];
                 }
-                at += triangles.len();
+                count += own.len();
             });
         }
+        out.extend_from_slice(&waiting[..count]);
     }
 }
 
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
-fn write_triangles<const D: usize, const C: usize>(layer: &Layer<'_, D, C>, out: &mut [[u32; 3]]) {
-    layer.write(out, |_, _, _, _| None);
+fn write_triangles<const D: usize, const C: usize>(layer: &Layer<'_, D, C>, out: &mut Vec<[u32; 3]>) {
+    layer.write::<false>(out, |_, _, _, _| false);
 }
 
-/// Writes the vertices on the edges that start in a plane of samples; `first` is the number of the first that there is room for.
+/// Adds the vertices on the edges that start in a plane of samples, and room for those inside the cells of each row.
 #[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
 fn write_vertices<const D: usize, const C: usize>(
     layer: &Layer<'_, D, C>,
-    site: &Site,
     samples: &Samples<'_>,
-    first: u32,
-    positions: &mut [[f64; 3]],
-    mut normals: Option<&mut [[f64; 3]]>,
+    end: u32,
+    vertices: &mut Vertices<'_>,
 ) {
     let (bits, k) = (layer.bits, layer.k);
     let row_count = bits.dimensions[1];
-    for j in 0..row_count {
-        let row = &layer.rows[k * row_count + j];
+    let rows = &layer.rows[k * row_count..(k + 1) * row_count];
+    for (j, row) in rows.iter().enumerate() {
         for (number, &direction) in layer.pattern.directions.iter().enumerate() {
             let end = if number + 1 < D { row.edges[number + 1] } else { row.inner };
-            let (start, end) = ((row.edges[number] - first) as usize, (end - first) as usize);
-            if start == end {
+            if row.edges[number] == end {
                 continue;
             }
             let Some(edges) = edge_row(bits, direction, j, k) else { continue };
-            let positions = &mut positions[start..end];
-            let normals = normals.as_mut().map(|normals| &mut normals[start..end]);
             match direction {
-                1 => edges.vertices::<1>(site, samples, [j, k], positions, normals),
-                2 => edges.vertices::<2>(site, samples, [j, k], positions, normals),
-                3 => edges.vertices::<3>(site, samples, [j, k], positions, normals),
-                4 => edges.vertices::<4>(site, samples, [j, k], positions, normals),
-                5 => edges.vertices::<5>(site, samples, [j, k], positions, normals),
-                6 => edges.vertices::<6>(site, samples, [j, k], positions, normals),
-                _ => edges.vertices::<7>(site, samples, [j, k], positions, normals),
+                1 => edges.vertices::<1>(samples, [j, k], vertices),
+                2 => edges.vertices::<2>(samples, [j, k], vertices),
+                3 => edges.vertices::<3>(samples, [j, k], vertices),
+                4 => edges.vertices::<4>(samples, [j, k], vertices),
+                5 => edges.vertices::<5>(samples, [j, k], vertices),
+                6 => edges.vertices::<6>(samples, [j, k], vertices),
+                _ => edges.vertices::<7>(samples, [j, k], vertices),
             }
         }
+        vertices.skip(rows.get(j + 1).map_or(end, |next| next.edges[0]) - row.inner);
     }
+    vertices.flush();
 }
 
 impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
@@ -247,8 +244,13 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
         let mut layers = vec![0; planes];
         let mut starts = Vec::with_capacity(planes + 1);
         let mut memory = Vec::new();
-        let (mut counted, mut written, mut vertices, mut triangles) = (0..0, 0..0, 0, 0);
-        let wave = (WAVE_SAMPLES / self.slabs.lattice().slab_len()).clamp(LEAST_WAVE, MOST_WAVE);
+        let (mut counted, mut written, mut vertices) = (0..0, 0..0, 0);
+        let mut window = SlabWindow::new(self.slabs);
+        let alone = workers(exec) == 1;
+        let wave = match alone {
+            true => LAYERS,
+            false => (WAVE_SAMPLES / self.slabs.lattice().slab_len()).clamp(LEAST_WAVE, MOST_WAVE),
+        };
         for first in (0..planes).step_by(wave) {
             exec.progress(first as f64 / planes as f64);
             let end = (first + wave).min(planes);
@@ -261,30 +263,43 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
             surface.inner_vertices += of_planes.iter().map(|row| u64::from(row.inner)).sum::<u64>();
             vertices = number(of_planes, row_count, vertices, &mut starts)?;
             written = written.end..if end == planes { planes } else { counted.end - 1 };
-            triangles += layers[written.clone()].iter().sum::<u64>();
-            if triangles.saturating_mul(3) >= u64::from(u32::MAX) {
-                return Err(MeshError::TooMany { kind: "wedges", found: triangles.saturating_mul(3) }.into());
-            }
-            let known = starts.get(written.end).map_or(vertices, |&start| u64::from(start)) as usize;
+            let faces = surface.triangles.len() as u64 + most_triangles(written.clone(), &starts, vertices, &layers);
+            let known = first_of(&starts, written.end, vertices) as usize;
             let part = written.end as f64 / planes as f64;
             grow(&mut surface.positions, known, part, &mut memory, exec)?;
-            grow(&mut surface.triangles, triangles as usize, part, &mut memory, exec)?;
+            grow(&mut surface.triangles, faces as usize, part, &mut memory, exec)?;
             if let Some(normals) = &mut surface.normals {
                 grow(normals, known, part, &mut memory, exec)?;
             }
-            let mut blocks = surface.blocks(written.clone(), &starts, &layers, (known, triangles as usize));
-            fill_chunks(exec, &mut blocks, 1, |_, block| {
-                block.iter_mut().try_for_each(|block| self.write_block(block, &rows, &layers, exec))
-            })?;
+            if alone {
+                self.write(written.clone(), 0, (&rows, &starts, vertices), &mut window, &mut surface, exec)?;
+            } else {
+                let of_blocks = (known - surface.positions.len()) as u64 * if self.normals { 48 } else { 24 };
+                let _of_blocks = exec.reserve(of_blocks + 12 * (faces - surface.triangles.len() as u64))?;
+                let blocks = map_chunks(exec, written.len(), LAYERS, |layers_of| {
+                    let own = written.start + layers_of.start..written.start + layers_of.end;
+                    let most = most_triangles(own.clone(), &starts, vertices, &layers);
+                    let [first, end] = [own.start, own.end].map(|k| first_of(&starts, k, vertices));
+                    let mut block = Surface::with_room((end - first) as usize, most as usize, self.normals);
+                    let mut window = SlabWindow::new(self.slabs);
+                    self.write(own, first, (&rows, &starts, vertices), &mut window, &mut block, exec)?;
+                    Ok::<Surface, ConvertError>(block)
+                })?;
+                blocks.into_iter().for_each(|block| surface.append(block));
+            }
+            let wedges = 3 * surface.triangles.len() as u64;
+            if wedges >= u64::from(u32::MAX) {
+                return Err(MeshError::TooMany { kind: "wedges", found: wedges }.into());
+            }
         }
-        surface.positions.shrink_to_fit();
-        surface.triangles.shrink_to_fit();
-        surface.normals.iter_mut().for_each(Vec::shrink_to_fit);
+        give_back(&mut surface.positions);
+        give_back(&mut surface.triangles);
+        surface.normals.iter_mut().for_each(give_back);
         surface.working_bytes = size_of_val(rows.as_slice()) as u64;
         Ok(surface)
     }
 
-    /// Counts crossed edges and inner vertices of each row, and triangles of each layer.
+    /// Counts crossed edges and inner vertices of each row, and triangles of each layer where samples decide.
     fn count(
         &self,
         planes: Range<usize>,
@@ -305,10 +320,9 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
                 if k == last {
                     continue;
                 }
-                **triangles = match &self.topology {
-                    None => count_triangles(&self.bits, self.pattern, k),
-                    Some(topology) => self.count_special(topology, k, rows, &mut window)?,
-                };
+                if let Some(topology) = &self.topology {
+                    **triangles = self.count_special(topology, k, rows, &mut window)?;
+                }
             }
             Ok::<(), ConvertError>(())
         })
@@ -371,130 +385,89 @@ impl<S: Slabs + ?Sized, const D: usize, const C: usize> Marching<'_, S, D, C> {
         })
     }
 
-    fn write_block(
+    /// Adds the vertices of planes and the triangles of the layers above them. The vertex `first` is at the start of the positions.
+    fn write(
         &self,
-        block: &mut Block<'_>,
-        rows: &[Row<D>],
-        layers: &[u64],
+        planes: Range<usize>,
+        first: u32,
+        (rows, starts, total): (&[Row<D>], &[u32], u64),
+        window: &mut SlabWindow<'_, S>,
+        out: &mut Surface,
         exec: &Exec,
     ) -> Result<(), ConvertError> {
         let site = Site::new(self.slabs.lattice(), self.level, self.bits.margin, self.bits.tame);
-        let mut window = SlabWindow::new(self.slabs);
-        let mut triangles = 0;
-        for k in block.first_layer..=block.last_plane {
+        let last = self.bits.dimensions[2] - 1;
+        let Surface { positions, normals, triangles, .. } = out;
+        let (batch, normals) = (EdgeBatch::new(), normals.as_mut());
+        let mut vertices = Vertices { site: &site, batch, places: [0; PLACES], first, positions, normals };
+        for k in planes {
             exec.check()?;
             let layer = Layer { bits: &self.bits, pattern: self.pattern, rows, k };
-            let room = triangles..triangles + layers[k] as usize;
-            triangles = room.end;
-            let out = &mut block.triangles[room];
-            let (positions, normals) = (&mut *block.positions, block.normals.as_deref_mut());
-            let mut vertices = Vertices { site: &site, first: block.first_vertex, positions, normals };
+            let [start, end, next] = [k, k + 1, k + 2].map(|k| first_of(starts, k, total));
+            if start == next {
+                continue;
+            }
             if self.topology.is_none() {
-                if !out.is_empty() {
-                    write_triangles(&layer, out);
+                if k < last {
+                    write_triangles(&layer, triangles);
                 }
-                let row_count = self.bits.dimensions[1];
-                let next = rows.get((k + 1) * row_count).map_or(usize::MAX, |row| row.edges[0] as usize);
-                let end = block.first_vertex as usize + vertices.positions.len();
-                if rows[k * row_count].edges[0] as usize == next.min(end) {
+                if start == end {
                     continue;
                 }
             }
-            self.with_samples(&mut window, k, self.normals, |samples| {
-                let normals = vertices.normals.as_deref_mut();
-                write_vertices(&layer, &site, samples, block.first_vertex, vertices.positions, normals);
-                if let Some(topology) = &self.topology {
-                    self.write_special(topology, &layer, samples, &mut vertices, out);
+            self.with_samples(window, k, self.normals, |samples| {
+                write_vertices(&layer, samples, end, &mut vertices);
+                if let Some(topology) = self.topology.as_ref().filter(|_| k < last) {
+                    self.write_special(topology, &layer, samples, &mut vertices, triangles);
                 }
             })?;
         }
         Ok(())
     }
 
-    /// Writes the triangles of a layer where samples decide, and the inner vertices.
+    /// Adds the triangles of a layer where samples decide, and writes the inner vertices.
     fn write_special(
         &self,
         topology: &CellTopology,
         layer: &Layer<'_, D, C>,
         samples: &Samples<'_>,
         vertices: &mut Vertices<'_>,
-        out: &mut [[u32; 3]],
+        out: &mut Vec<[u32; 3]>,
     ) {
-        if out.is_empty() {
-            return;
-        }
         let row_count = self.bits.dimensions[1];
         let (mut row, mut inner) = (usize::MAX, 0);
-        layer.write(out, |[i, j], mask, numbers, out| {
+        layer.write::<true>(out, |[i, j], mask, numbers, out| {
             if row != j {
                 (row, inner) = (j, layer.rows[layer.k * row_count + j].inner);
             }
-            let surface = topology.surface(mask, || self.corners(samples, i, j))?;
-            for (out, triangle) in out.iter_mut().zip(&surface.triangles) {
+            let Some(surface) = topology.surface(mask, || self.corners(samples, i, j)) else { return false };
+            out.extend(surface.triangles.iter().map(|triangle| {
                 let [a, b, c] = triangle.map(|corner| match topology.place(corner) {
                     Ok(place) => numbers.as_flattened()[place as usize],
                     Err(vertex) => inner + u32::from(vertex),
                 });
-                *out = if self.mirrored { [a, c, b] } else { [a, b, c] };
-            }
+                if self.mirrored { [a, c, b] } else { [a, b, c] }
+            }));
             for &place in &surface.inner {
                 vertices.write_inner(samples, [i, j, layer.k], inner, place);
                 inner += 1;
             }
-            Some(surface.triangles.len())
+            true
         });
     }
 }
 
-/// Where the vertices of a block go to.
-struct Vertices<'a> {
-    site: &'a Site,
-    first: u32,
-    positions: &'a mut [[f64; 3]],
-    normals: Option<&'a mut [[f64; 3]]>,
+/// The number of the first vertex of a plane, or of all where the plane is not counted yet.
+fn first_of(starts: &[u32], plane: usize, total: u64) -> u32 {
+    starts.get(plane).copied().unwrap_or(total as u32)
 }
 
-impl Vertices<'_> {
-    /// Writes a vertex inside a cell.
-    fn write_inner(&mut self, samples: &Samples<'_>, cell: [usize; 3], number: u32, [x, y, z]: [f64; 3]) {
-        let margin = self.site.margin as f64;
-        let at = (number - self.first) as usize;
-        let [i, j, k] = cell.map(|start| start as f64 - margin);
-        self.positions[at] = self.site.place(i + x, j + y, k + z);
-        let Some(normals) = self.normals.as_deref_mut() else { return };
-        let [i, j] = [cell[0], cell[1]].map(|start| start.wrapping_sub(self.site.margin));
-        let corners = (0..8usize).filter_map(|corner| {
-            let (column, row) = (i.wrapping_add(corner & 1), j.wrapping_add(corner >> 1 & 1));
-            samples.get(column, row, corner >> 2)?;
-            let part = |bit: usize, x: f64| if corner >> bit & 1 == 1 { x } else { 1.0 - x };
-            Some(samples.gradient(column, row, corner >> 2) * (part(0, x) * part(1, y) * part(2, z)))
-        });
-        normals[at] = self.site.normal(corners.sum(), DVec3::Z);
-    }
-}
-
-/// Makes room for so many elements in all when a part of the lattice is done: first taken from the budget, and for as many as there
-/// will be if it goes on like this, where the budget has that much. What grows often is copied often.
-fn grow<T>(
-    vector: &mut Vec<T>,
-    needed: usize,
-    part: f64,
-    memory: &mut Vec<Reservation>,
-    exec: &Exec,
-) -> Result<(), OverBudget> {
-    let held = vector.capacity();
-    if needed > held {
-        let expected = if part < 1.0 { (needed as f64 * 1.02 / part) as usize } else { needed };
-        let expected = expected.clamp(needed, 16 * needed);
-        let reserve = |capacity: usize| exec.reserve_elements((capacity - held) as u64, size_of::<T>());
-        let (capacity, reserved) = match reserve(expected) {
-            Ok(reserved) => (expected, reserved),
-            Err(_) => (needed, reserve(needed)?),
-        };
-        memory.push(reserved);
-        vector.reserve_exact(capacity - vector.len());
-    }
-    Ok(())
+/// No fewer triangles than layers have: as counted where samples decide. A pattern gives no more than half as many in a cell as the
+/// sum over its tetrahedra of their crossed edges, or five for seven crossed edges of a cube; so three for each vertex of the planes
+/// below and above, as no edge has more than six tetrahedra or four cubes.
+fn most_triangles(layers: Range<usize>, starts: &[u32], total: u64, counted: &[u64]) -> u64 {
+    let of_layer = |k: usize| 3 * u64::from(first_of(starts, k + 2, total) - first_of(starts, k, total));
+    layers.map(|k| if counted[k] > 0 { counted[k] } else { of_layer(k) }).sum()
 }
 
 /// Makes counts numbers, from `total` on: those of the first vertices of each row. Adds the first of each plane to `starts`.
@@ -518,38 +491,21 @@ fn number<const D: usize>(
 }
 
 impl Surface {
-    /// Makes room for so many vertices and triangles in all, and cuts what is new into what each block of layers writes.
-    fn blocks(
-        &mut self,
-        planes: Range<usize>,
-        starts: &[u32],
-        layers: &[u64],
-        (vertices, triangles): (usize, usize),
-    ) -> Vec<Block<'_>> {
-        let (first_vertex, first_triangle) = (self.positions.len(), self.triangles.len());
-        self.positions.resize(vertices, [0.0; 3]);
-        self.triangles.resize(triangles, [0; 3]);
-        let mut positions = &mut self.positions[first_vertex..];
-        let mut triangles = &mut self.triangles[first_triangle..];
-        let mut normals = self.normals.as_mut().map(|normals| {
-            normals.resize(vertices, [0.0; 3]);
-            &mut normals[first_vertex..]
-        });
-        let mut blocks = Vec::new();
-        for first_layer in planes.clone().step_by(LAYERS) {
-            let end = (first_layer + LAYERS).min(planes.end);
-            let end_vertex = starts.get(end).map_or(vertices, |&start| start as usize);
-            let own = end_vertex - starts[first_layer] as usize;
-            let faces = layers[first_layer..end].iter().sum::<u64>() as usize;
-            blocks.push(Block {
-                first_layer,
-                last_plane: end - 1,
-                first_vertex: starts[first_layer],
-                positions: positions.split_off_mut(..own).unwrap_or_default(),
-                normals: normals.as_mut().and_then(|normals| normals.split_off_mut(..own)),
-                triangles: triangles.split_off_mut(..faces).unwrap_or_default(),
-            });
+    fn with_room(vertices: usize, triangles: usize, normals: bool) -> Self {
+        Self {
+            positions: Vec::with_capacity(vertices),
+            normals: normals.then(|| Vec::with_capacity(vertices)),
+            triangles: Vec::with_capacity(triangles),
+            ..Self::default()
         }
-        blocks
+    }
+
+    /// Adds what comes next, for which there is room.
+    fn append(&mut self, mut next: Self) {
+        self.positions.append(&mut next.positions);
+        self.triangles.append(&mut next.triangles);
+        if let (Some(normals), Some(next)) = (&mut self.normals, &mut next.normals) {
+            normals.append(next);
+        }
     }
 }

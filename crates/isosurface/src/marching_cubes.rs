@@ -83,3 +83,63 @@ impl<S: Slabs + ?Sized> Convert<S> for MarchingCubes {
         Ok(Converted::new(finish(surface)?, report))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Lattice;
+    use shapeloom_core::glam::DVec3;
+    use shapeloom_core::{Affine, Threads};
+    use shapeloom_mesh::{Domain, NORMAL};
+
+    struct Samples(Lattice, Vec<f32>);
+
+    impl Slabs for Samples {
+        fn lattice(&self) -> &Lattice {
+            &self.0
+        }
+
+        fn slab<'a>(&'a self, k: u32, _: &'a mut Vec<f32>) -> Result<&'a [f32], ConvertError> {
+            let size = self.0.slab_len();
+            Ok(&self.1[k as usize * size..][..size])
+        }
+    }
+
+    /// With several threads blocks are made by themselves and put together; alone everything is written to its place.
+    #[test]
+    fn threads_do_not_matter() {
+        let mut state = 3u32;
+        let dimensions = [70, 11, 45];
+        let mut samples = Vec::new();
+        for _ in 0..70 * 11 * 45 {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            samples.push((state >> 8) as f32 / 8e6 - 1.0);
+        }
+        let lattice = Lattice::try_new(dimensions, Affine::from_scale(DVec3::new(1.0, 2.0, -0.5))).unwrap();
+        for (wild, topology, border) in [
+            (false, Topology::Table, Border::Open),
+            (false, Topology::Exact, Border::Closed),
+            (true, Topology::Table, Border::Closed),
+            (true, Topology::Exact, Border::Open),
+        ] {
+            let mut samples = Samples(lattice, samples.clone());
+            if wild {
+                samples.1[700] = f32::NAN;
+            }
+            let cubes = MarchingCubes { topology, border, normals: true, ..MarchingCubes::new() };
+            let exec = Exec::default();
+            let alone = cubes.convert_with(&samples, &exec.clone().with_threads(Threads::Sequential)).unwrap();
+            let many = cubes.convert_with(&samples, &exec).unwrap();
+            assert!(alone.value == many.value && alone.value.triangles().len() > 50_000);
+            let Some(normals) = alone.value.attribute(Domain::Vertex, NORMAL) else { panic!("no normals") };
+            assert_eq!(normals.len(), alone.value.positions().len());
+            // Every vertex is on a line of the lattice, or inside a cell with exact topology.
+            let off = |x: f64| (x - x.round()).abs() > 1e-9;
+            for &position in alone.value.positions() {
+                let [x, y, z] = [position.x, position.y / 2.0, position.z / -0.5];
+                let several = [x, y, z].into_iter().filter(|&x| off(x)).count() > 1;
+                assert!(!several || topology == Topology::Exact, "{position}");
+            }
+        }
+    }
+}

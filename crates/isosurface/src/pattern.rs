@@ -175,6 +175,23 @@ mod tests {
         vertices_are_crossings(tetrahedra_pattern(true), &edges);
     }
 
+    /// What the room for triangles is made from, see `most_triangles`.
+    #[test]
+    fn triangles_are_few_beside_crossed_edges() {
+        let crossed = |mask: u8, a: u8, b: u8| mask >> a & 1 != mask >> b & 1;
+        for mask in 0..=255u8 {
+            let of_cube = CUBE_EDGES.iter().filter(|(from, d)| crossed(mask, *from, from + d)).count() as u32;
+            assert!(7 * cube_pattern(false).count(mask) <= 5 * of_cube, "{mask:08b}");
+            let mut of_tetrahedra = 0;
+            for (first, second) in [(1, 2), (2, 4), (4, 1), (2, 1), (4, 2), (1, 4)] {
+                let corners = [0, first, first + second, 7];
+                let pairs = [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)];
+                of_tetrahedra += pairs.iter().filter(|&&(a, b)| crossed(mask, corners[a], corners[b])).count() as u32;
+            }
+            assert!(2 * tetrahedra_pattern(false).count(mask) <= of_tetrahedra, "{mask:08b}");
+        }
+    }
+
     #[test]
     fn tetrahedra_of_one_corner_are_counted() {
         // The corner 0 is in all six, the corner 1 in two.

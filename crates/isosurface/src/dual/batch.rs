@@ -1,6 +1,7 @@
 //! The means of the crossings of many cells at once.
 
 use multiversion::multiversion;
+use shapeloom_core::glam::{DMat3, DVec3};
 
 /// How many cells are done at once: their numbers stay in the first-level cache.
 pub(super) const BATCH: usize = 128;
@@ -9,8 +10,8 @@ pub(super) const BATCH: usize = 128;
 pub(super) struct Batch {
     pub(super) len: usize,
     pub(super) corners: [[f32; BATCH]; 8],
-    /// Column and row of each cell.
-    pub(super) cells: [[u32; 2]; BATCH],
+    /// Columns and rows of the cells.
+    pub(super) cells: [[u32; BATCH]; 2],
     /// Each cell's place among the bits of its layer.
     pub(super) keys: [u64; BATCH],
     /// The means, in the cell from 0 to 1.
@@ -19,6 +20,11 @@ pub(super) struct Batch {
     pub(super) gradients: [[f32; BATCH]; 3],
     /// Which corners are inside, a bit each.
     pub(super) insides: [u32; BATCH],
+    /// The means in space.
+    pub(super) positions: [[f64; BATCH]; 3],
+    /// The directions of the gradients in space, where there is one.
+    pub(super) normals: [[f64; BATCH]; 3],
+    pub(super) sloped: [bool; BATCH],
 }
 
 impl Batch {
@@ -26,11 +32,14 @@ impl Batch {
         Box::new(Self {
             len: 0,
             corners: [[0.0; BATCH]; 8],
-            cells: [[0; 2]; BATCH],
+            cells: [[0; BATCH]; 2],
             keys: [0; BATCH],
             places: [[0.0; BATCH]; 3],
             gradients: [[0.0; BATCH]; 3],
             insides: [0; BATCH],
+            positions: [[0.0; BATCH]; 3],
+            normals: [[0.0; BATCH]; 3],
+            sloped: [false; BATCH],
         })
     }
 }
@@ -88,5 +97,39 @@ pub(super) fn gradients(corners: &[[f32; BATCH]; 8], places: &[[f32; BATCH]; 3],
         gx[n] = mix(mix(v(1) - v(0), v(3) - v(2), y), mix(v(5) - v(4), v(7) - v(6), y), z);
         gy[n] = mix(mix(v(2) - v(0), v(3) - v(1), x), mix(v(6) - v(4), v(7) - v(5), x), z);
         gz[n] = mix(mix(v(4) - v(0), v(5) - v(1), x), mix(v(6) - v(2), v(7) - v(3), x), y);
+    }
+}
+
+/// Maps the means of cells whose first corner is at `from`, less columns and rows, by columns of a matrix and a translation.
+#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
+pub(super) fn place(batch: &mut Batch, from: DVec3, linear: &DMat3, translation: DVec3) {
+    let Batch { cells: [columns, rows], places, positions: [px, py, pz], .. } = batch;
+    let (ax, ay, az) = (linear.x_axis, linear.y_axis, linear.z_axis);
+    for n in 0..BATCH {
+        // Fewer than 2^31: they convert as signed numbers at once.
+        let x = f64::from(columns[n] as i32) + from.x + f64::from(places[0][n]);
+        let y = f64::from(rows[n] as i32) + from.y + f64::from(places[1][n]);
+        let z = from.z + f64::from(places[2][n]);
+        px[n] = ax.x * x + ay.x * y + az.x * z + translation.x;
+        py[n] = ax.y * x + ay.y * y + az.y * z + translation.y;
+        pz[n] = ax.z * x + ay.z * y + az.z * z + translation.z;
+    }
+}
+
+/// Maps the gradients by a matrix, and makes them as long as 1.
+#[multiversion(targets("x86_64+avx+avx2+bmi1+bmi2+lzcnt+popcnt"))]
+pub(super) fn directions(batch: &mut Batch, matrix: &DMat3) {
+    let Batch { gradients, normals: [nx, ny, nz], sloped, .. } = batch;
+    let (mx, my, mz) = (matrix.x_axis, matrix.y_axis, matrix.z_axis);
+    for n in 0..BATCH {
+        let [x, y, z] = [f64::from(gradients[0][n]), f64::from(gradients[1][n]), f64::from(gradients[2][n])];
+        let u = mx.x * x + my.x * y + mz.x * z;
+        let v = mx.y * x + my.y * y + mz.y * z;
+        let w = mx.z * x + my.z * y + mz.z * z;
+        let by_length = 1.0 / (u * u + v * v + w * w).sqrt();
+        sloped[n] = by_length > 0.0 && by_length < f64::INFINITY;
+        nx[n] = u * by_length;
+        ny[n] = v * by_length;
+        nz[n] = w * by_length;
     }
 }

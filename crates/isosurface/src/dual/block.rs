@@ -7,7 +7,7 @@ use shapeloom_core::glam::{DMat3, DVec3};
 use shapeloom_core::{Affine, ConvertError, Exec, Reservation};
 use shapeloom_mesh::MeshError;
 
-use super::batch::{BATCH, Batch, gradients, means};
+use super::batch::{BATCH, Batch, directions, gradients, means, place};
 use super::cell::{Cell, Surroundings};
 use super::cell_layer::{CellLayer, SplitCell};
 use super::cell_tables::{PIECES, SIMPLE, double_face};
@@ -15,6 +15,7 @@ use super::quads::{Around, add_quads};
 use super::sign_slice::{Frame, SignSlice};
 use super::slab_ring::{KEPT, SlabRing};
 use super::{Placed, VertexRule};
+use crate::growth::{give_back, grow};
 use crate::{Inside, Level, Slabs};
 
 /// What does not change from layer to layer.
@@ -36,7 +37,7 @@ pub(super) struct Made {
     /// Their normals, if they were asked for.
     pub(super) normals: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The vertices without triangles, in order: all edges that they stand for lie on an open border.
+    /// The vertices without triangles, in order: all edges that they stand for lie on an open border, but not all of their cell's.
     pub(super) unused: Vec<u32>,
     /// How many vertices belong to the layer below the run.
     pub(super) borrowed: usize,
@@ -50,6 +51,9 @@ pub(super) struct Made {
 
 /// Work between two polls, in words of signs.
 const POLL: usize = 1 << 15;
+
+/// The same, in cells that are looked at one by one.
+const AT_ONCE: usize = 1024;
 
 /// Makes a run of layers. Each needs the signs of the slices around it and of those next to them.
 pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
@@ -87,7 +91,7 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
             next_slice += 1;
         }
         let (lower, upper) = (&signs[k % KEPT], &signs[(k + 1) % KEPT]);
-        let count = layer.find(frame, lower, upper);
+        let count = layer.find(frame, k, lower, upper);
         let before = made.positions.len();
         // At most four vertices a cell; the numbers of one run must fit.
         let found = before as u64 + 4 * count;
@@ -96,12 +100,10 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
         }
         layer.number_from(before as u32);
         if count > 0 {
-            grow(&mut made.positions, count as usize, done, &mut made.memory, exec)?;
+            grow(&mut made.positions, before + count as usize, done, &mut made.memory, exec)?;
             if plan.normals {
-                grow(&mut made.normals, count as usize, done, &mut made.memory, exec)?;
+                grow(&mut made.normals, before + count as usize, done, &mut made.memory, exec)?;
             }
-            let at_border = 4 * frame.cells_at_border(k).min(count as usize);
-            grow(&mut made.unused, at_border, done, &mut made.memory, exec)?;
             let slice = |from_layer: usize| (k + from_layer).checked_sub(1).and_then(|slice| frame.slab(slice));
             let slabs_around = ring.views(slabs, &mut spare, [0, 1, 2, 3].map(slice))?;
             collector.begin(k);
@@ -139,7 +141,8 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
                     // Each cell has three edges of its own.
                     let (from, to) = (rows.start * frame.stride, rows.end * frame.stride);
                     let cells: usize = layer.active[from..to].iter().map(|word| word.count_ones() as usize).sum();
-                    grow(&mut made.triangles, 6 * cells, done, &mut made.memory, exec)?;
+                    let needed = made.triangles.len() + 6 * cells;
+                    grow(&mut made.triangles, needed, done, &mut made.memory, exec)?;
                     add_quads(&around, rows, &mut made.triangles);
                 }
             }
@@ -150,32 +153,15 @@ pub(super) fn make<S: Slabs + ?Sized, R: VertexRule>(
         std::mem::swap(&mut below, &mut layer);
     }
     made.unused.sort_unstable();
+    give_back(&mut made.positions);
+    give_back(&mut made.normals);
+    give_back(&mut made.triangles);
     Ok(made)
 }
 
 /// Ranges of so many rows at most.
 fn parts(rows: usize, size: usize) -> impl Iterator<Item = Range<usize>> {
     (0..rows).step_by(size).map(move |from| from..(from + size).min(rows))
-}
-
-/// Makes room for more elements, which is first taken from the budget.
-fn grow<T>(
-    vector: &mut Vec<T>,
-    more: usize,
-    done: f64,
-    memory: &mut Vec<Reservation>,
-    exec: &Exec,
-) -> Result<(), ConvertError> {
-    let free = vector.capacity() - vector.len();
-    if free < more {
-        let needed = vector.len() + more;
-        // As many as there will be if it goes on like this, but not far more than are sure to come.
-        let expected = (needed as f64 * 1.05 / done.max(0.01)) as usize;
-        let capacity = expected.clamp(needed.max(vector.capacity() + vector.capacity() / 4), 2 * needed);
-        memory.push(exec.reserve_elements((capacity - vector.capacity()) as u64, size_of::<T>())?);
-        vector.reserve_exact(capacity - vector.len());
-    }
-    Ok(())
 }
 
 /// A cell that is looked at on its own.
@@ -222,27 +208,21 @@ impl Collector {
             gradients(&batch.corners, &batch.places, &mut batch.gradients);
         }
         let pad = plan.frame.pad as f64;
-        let Affine { linear, translation } = plan.placement;
-        let z = self.layer as f64 - pad;
+        let from = DVec3::new(-pad, -pad, self.layer as f64 - pad);
+        place(batch, from, &plan.placement.linear, plan.placement.translation);
+        let first = made.positions.len() as u32;
+        let [x, y, z] = &batch.positions;
+        made.positions.extend((0..batch.len).map(|n| DVec3::new(x[n], y[n], z[n])));
+        if plan.normals {
+            directions(batch, &plan.cofactors);
+            let [x, y, z] = &batch.normals;
+            made.normals.extend((0..batch.len).map(|n| [x[n], y[n], z[n]]));
+        }
         for n in 0..batch.len {
-            let [column, row] = batch.cells[n];
-            let [x, y, dz] = [0, 1, 2].map(|axis| f64::from(batch.places[axis][n]));
-            let (x, y) = (f64::from(column) - pad + x, f64::from(row) - pad + y);
-            let position = linear.x_axis * x + linear.y_axis * y + linear.z_axis * (z + dz) + translation;
-            let vertex = made.positions.len() as u32;
-            made.positions.push(position);
-            let mut special = everywhere || !SIMPLE[(batch.insides[n] & 255) as usize] || !self.tame[row as usize];
-            if plan.normals {
-                let gradient = DVec3::from([0, 1, 2].map(|axis| f64::from(batch.gradients[axis][n])));
-                let normal = (plan.cofactors * gradient).normalize_or_zero();
-                special |= !normal.is_finite() || normal == DVec3::ZERO;
-                made.normals.push(normal.to_array());
-            }
-            let edges = plan.frame.edges_at_border([column as usize, row as usize, self.layer]);
-            if edges != 0 && !special && PIECES[(batch.insides[n] & 255) as usize].edges[0] & !edges == 0 {
-                made.unused.push(vertex);
-            }
-            if special {
+            let [column, row] = [batch.cells[0][n], batch.cells[1][n]];
+            let simple = SIMPLE[(batch.insides[n] & 255) as usize] && self.tame[row as usize];
+            if everywhere || !simple || plan.normals && !batch.sloped[n] {
+                let vertex = first + n as u32;
                 self.special.push(Special { key: batch.keys[n], cell: [column, row], vertex });
             }
         }
@@ -298,7 +278,8 @@ fn collect(
                     collector.batch.corners[2 * r][n] = low * sign;
                     collector.batch.corners[2 * r + 1][n] = high * sign;
                 }
-                collector.batch.cells[n] = [column as u32, row as u32];
+                collector.batch.cells[0][n] = column as u32;
+                collector.batch.cells[1][n] = row as u32;
                 collector.batch.keys[n] = f as u64 * 64 + u64::from(bit);
                 collector.batch.len = n + 1;
                 if n + 1 == BATCH {
@@ -325,8 +306,16 @@ fn revise<R: VertexRule>(
 ) -> Result<(), ConvertError> {
     let frame = &plan.frame;
     for (count, special) in special.iter().enumerate() {
-        if count % 1024 == 1023 {
+        if count % AT_ONCE == 0 {
             exec.check()?;
+            // A cell has four vertices at most, and one of them already.
+            let more = made.positions.len() + 3 * AT_ONCE;
+            grow(&mut made.positions, more, done, &mut made.memory, exec)?;
+            if plan.normals {
+                grow(&mut made.normals, more, done, &mut made.memory, exec)?;
+            }
+            let more = made.unused.len() + 4 * AT_ONCE;
+            grow(&mut made.unused, more, done, &mut made.memory, exec)?;
         }
         let [column, row] = special.cell.map(|at| at as usize);
         let corners = corners_at(frame, signs, [column, row, surroundings.layer]).unwrap_or(0);
@@ -363,10 +352,8 @@ fn revise<R: VertexRule>(
                     made.normals[vertex] = normal.to_array();
                 }
             } else {
-                grow(&mut made.positions, 1, done, &mut made.memory, exec)?;
                 made.positions.push(position);
                 if let Some(normal) = normal {
-                    grow(&mut made.normals, 1, done, &mut made.memory, exec)?;
                     made.normals.push(normal.to_array());
                 }
             }

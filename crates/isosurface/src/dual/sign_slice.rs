@@ -52,13 +52,14 @@ impl Frame {
         edges
     }
 
-    /// How many cells of a layer lie at an open border.
-    pub(super) fn cells_at_border(&self, layer: usize) -> usize {
-        match (self.pad, layer) {
-            (0, layer) if layer == 0 || layer + 1 == self.cells(2) => self.cells(0) * self.cells(1),
-            (0, _) => 2 * (self.cells(0) + self.cells(1)),
-            _ => 0,
-        }
+    /// Whether cells at this place along an axis are the first or the last ones.
+    pub(super) fn at_end(&self, axis: usize, cell: usize) -> bool {
+        cell == 0 || cell + 1 == self.cells(axis)
+    }
+
+    /// Whether samples at this place along an axis are the first or the last ones.
+    pub(super) fn on_border(&self, axis: usize, sample: usize) -> bool {
+        sample == 0 || sample + 1 == self.padded(axis)
     }
 
     /// The slab of a slice, if it is not one of those around the lattice.
