@@ -4,6 +4,7 @@
 //! `docs/formats/shape_language.md` describes it whole. [`parse_vm`] and [`print_vm`] do the same for lists of arithmetic steps.
 
 mod bind;
+mod calls;
 mod error;
 mod foreign;
 mod functions;

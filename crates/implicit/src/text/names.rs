@@ -5,6 +5,9 @@ use std::collections::{HashMap, HashSet};
 use super::error::{TextProblem, line_of};
 use super::tokens::{Token, Tokens};
 
+/// How many names are looked through: a second's work at most.
+const MOST_NAMES: usize = 10_000;
+
 /// The name among `known` that differs least from `name`, where that is by a third of its letters at most. Of equals the first
 /// by the alphabet.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
@@ -13,9 +16,14 @@ pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) 
         return None;
     }
     let most = (name.len() / 3).max(1);
-    known
+    let alike: Vec<&str> =
+        known.into_iter().filter(|other| other.len().abs_diff(name.len()) <= most).take(MOST_NAMES + 1).collect();
+    // Not even of the first so many: a hash map's order must not show.
+    if alike.len() > MOST_NAMES {
+        return None;
+    }
+    alike
         .into_iter()
-        .filter(|other| other.len().abs_diff(name.len()) <= most)
         .map(|other| (edit_distance(name.as_bytes(), other.as_bytes()), other))
         .filter(|(distance, _)| *distance <= most)
         .min()
