@@ -1,19 +1,16 @@
 //! From text to trees.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use shapeloom_core::Aabb;
 
 use super::bind::Argument;
 use super::calls::Call;
 use super::error::{Fault, TextError, TextProblem, line_of, shortened};
-use super::foreign::{ForeignCall, ResolveError, Resolver};
-use super::functions::Callee;
-use super::names::{nearest, unknown};
+use super::foreign::Resolver;
+use super::names::unknown;
 use super::tokens::{Placed, Token, Tokens};
 use super::value::{Infix, PREFIX, Value, infix, prefix};
-use crate::program::CompileError;
 use crate::tree::Tree;
 
 /// What a text says.

@@ -94,8 +94,8 @@ impl Infix {
     /// How tightly it binds.
     pub(super) fn level(self) -> u8 {
         match self {
-            Self::Set(SetOperation::Union | SetOperation::Difference) => 1,
             Self::Set(SetOperation::Intersection) => 2,
+            Self::Set(SetOperation::Union | SetOperation::Difference) => 1,
             Self::Arithmetic(Binary::Multiply | Binary::Divide) => 4,
             Self::Arithmetic(_) => 3,
             Self::Power => POWER,

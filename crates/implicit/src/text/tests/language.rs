@@ -292,17 +292,18 @@ fn the_files_of_the_repository_are_shapes() {
         let (program, bounds) = (parsed.tree.compile().unwrap(), parsed.bounds.unwrap());
         let mut numbers = Numbers::new(1);
         let mut inside = 0;
-        for _ in 0..20_000 {
+        for _ in 0..3000 {
             let part = (numbers.point(0.5) + 0.5).clamp(DVec3::ZERO, DVec3::ONE);
-            let mut point = bounds.min + part * bounds.size();
+            let point = bounds.min + part * bounds.size();
             inside += usize::from(program.value(point) < 0.0);
-            point[0] = bounds.min.x;
-            assert!(program.value(point) > 0.0);
-            point = point.with_x(bounds.max.x).with_y(bounds.max.y);
-            assert!(program.value(point) > 0.0);
-            point = point.with_y(bounds.min.y).with_z(bounds.max.z);
-            assert!(program.value(point) > 0.0);
+            for axis in 0..3 {
+                for side in [bounds.min, bounds.max] {
+                    let mut on_face = point;
+                    on_face[axis] = side[axis];
+                    assert!(program.value(on_face) > 0.0, "{on_face}");
+                }
+            }
         }
-        assert!(inside > 500, "{inside}");
+        assert!(inside > 100, "{inside}");
     }
 }
