@@ -27,8 +27,8 @@ const MOST: usize = 1 << 21;
 
 /// Reads a text of the language.
 ///
-/// Time and memory are in proportion to the text; nesting takes no stack. `resolver` is asked for functions with text as their
-/// first argument that the language does not have.
+/// Time and memory are in proportion to the text; nesting takes no stack. `resolver` is asked for functions with text
+/// as their first argument that the language does not have.
 ///
 /// # Errors
 /// The first thing that is wrong, with its line and column. Parameters are checked as

@@ -15,15 +15,16 @@ use crate::operator::{Binary, Unary};
 use crate::shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
 use crate::tree::{Axis, Operation, Tree, post_order};
 
-/// How deep an expression may be nested, and how many bytes long a part of one may be, before it gets a line of its own.
+/// How deep an expression may be nested, and how many bytes long a part of one may be, before it gets a line of its
+/// own.
 const DEEPEST: usize = 16;
 const LONGEST: usize = 100;
 
 /// The tree as text of the language, with the bounds if there are some.
 ///
-/// It reads back to an equal tree: names, numbers and fields from elsewhere included, if the parameters are in their ranges. Named
-/// parts become definitions, so do shared ones and parts of deep or long expressions, under names such as `_1`. The same tree
-/// gives the same text. Time and memory are in proportion to the nodes.
+/// It reads back to an equal tree: names, numbers and fields from elsewhere included, if the parameters are in their
+/// ranges. Named parts become definitions, so do shared ones and parts of deep or long expressions, under names such as
+/// `_1`. The same tree gives the same text. Time and memory are in proportion to the nodes.
 pub fn to_text(tree: &Tree, bounds: Option<&Aabb>) -> String {
     let order = post_order(tree);
     let mut uses: HashMap<usize, usize> = HashMap::new();

@@ -12,7 +12,8 @@ use crate::tree::{Operation, Tree};
 
 /// What an expression stands for.
 ///
-/// Numbers are computed as they are read, so that they can be parameters; where a field is needed, a number is the constant field.
+/// Numbers are computed as they are read, so that they can be parameters; where a field is needed, a number is the
+/// constant field.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(f64),
