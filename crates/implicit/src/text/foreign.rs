@@ -27,7 +27,8 @@ impl ForeignCall {
         self.numbers.iter().find(|(of, _)| of == name).map(|(_, value)| *value)
     }
 
-    /// The call in text, always the same for the same call. It is what [`Foreign::source`](crate::Foreign::source) holds.
+    /// The call in text, always the same for the same call. It is what [`Foreign::source`](crate::Foreign::source)
+    /// holds.
     pub fn text(&self) -> String {
         if self.function == WORDS {
             return self.argument.clone();

@@ -1,9 +1,11 @@
 //! Trees as text: a small readable language, and the machine listings of other programs.
 //!
-//! [`parse`] reads the language of `.shape` files, [`to_text`] writes it: what was written reads back to an equal tree. The page
-//! `docs/formats/shape_language.md` describes it whole. [`parse_vm`] and [`print_vm`] do the same for lists of arithmetic steps.
+//! [`parse`] reads the language of `.shape` files, [`to_text`] writes it: what was written reads back to an equal tree.
+//! The page `docs/formats/shape_language.md` describes it whole. [`parse_vm`] and [`print_vm`] do the same for lists of
+//! arithmetic steps.
 
 mod bind;
+mod calls;
 mod error;
 mod foreign;
 mod functions;

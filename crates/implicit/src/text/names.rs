@@ -5,24 +5,33 @@ use std::collections::{HashMap, HashSet};
 use super::error::{TextProblem, line_of};
 use super::tokens::{Token, Tokens};
 
-/// The name among `known` that differs least from `name`, where that is by a third of its letters at most. Of equals the first
-/// by the alphabet.
+/// How many names are looked through: a second's work at most.
+const MOST_NAMES: usize = 10_000;
+
+/// The name among `known` that differs least from `name`, where that is by a third of its letters at most. Of equals
+/// the first by the alphabet.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     // Longer names are not worth the time: the distance takes the product of the lengths.
     if name.len() > 64 {
         return None;
     }
     let most = (name.len() / 3).max(1);
-    known
+    let alike: Vec<&str> =
+        known.into_iter().filter(|other| other.len().abs_diff(name.len()) <= most).take(MOST_NAMES + 1).collect();
+    // Not even of the first so many: a hash map's order must not show.
+    if alike.len() > MOST_NAMES {
+        return None;
+    }
+    alike
         .into_iter()
-        .filter(|other| other.len().abs_diff(name.len()) <= most)
         .map(|other| (edit_distance(name.as_bytes(), other.as_bytes()), other))
         .filter(|(distance, _)| *distance <= most)
         .min()
         .map(|(_, other)| other.to_owned())
 }
 
-/// How many letters must be changed, added, removed or swapped with their neighbour (the optimal string alignment distance).
+/// How many letters must be changed, added, removed or swapped with their neighbour (the optimal string alignment
+/// distance).
 fn edit_distance(a: &[u8], b: &[u8]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut above: Vec<usize> = (0..=b.len()).collect();
@@ -41,7 +50,8 @@ fn edit_distance(a: &[u8], b: &[u8]) -> usize {
     above[b.len()]
 }
 
-/// Why `name` is not known within the definition `inside` (empty for the shape itself), which begins at the byte `from`.
+/// Why `name` is not known within the definition `inside` (empty for the shape itself), which begins at the byte
+/// `from`.
 pub(super) fn unknown<'a>(
     text: &str,
     from: usize,

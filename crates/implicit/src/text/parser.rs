@@ -1,18 +1,16 @@
 //! From text to trees.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use shapeloom_core::Aabb;
 
 use super::bind::Argument;
+use super::calls::Call;
 use super::error::{Fault, TextError, TextProblem, line_of, shortened};
-use super::foreign::{ForeignCall, ResolveError, Resolver};
-use super::functions::Callee;
-use super::names::{nearest, unknown};
+use super::foreign::Resolver;
+use super::names::unknown;
 use super::tokens::{Placed, Token, Tokens};
 use super::value::{Infix, PREFIX, Value, infix, prefix};
-use crate::program::CompileError;
 use crate::tree::Tree;
 
 /// What a text says.
@@ -29,8 +27,8 @@ const MOST: usize = 1 << 21;
 
 /// Reads a text of the language.
 ///
-/// Time and memory are in proportion to the text; nesting takes no stack. `resolver` is asked for functions with text as their
-/// first argument that the language does not have.
+/// Time and memory are in proportion to the text; nesting takes no stack. `resolver` is asked for functions with text
+/// as their first argument that the language does not have.
 ///
 /// # Errors
 /// The first thing that is wrong, with its line and column. Parameters are checked as
@@ -56,20 +54,11 @@ pub(super) fn counted(text: &[u8], resolver: Option<&dyn Resolver>) -> Result<(P
 }
 
 /// What was begun and is not complete.
-enum Mark<'a> {
+pub(super) enum Mark<'a> {
     Prefix(char, usize),
     Infix(Infix, usize),
     Group,
     Call(Box<Call<'a>>),
-}
-
-struct Call<'a> {
-    function: &'a str,
-    at: usize,
-    arguments: Vec<Argument<'a>>,
-    /// The name and the place of the argument that is being read.
-    name: Option<&'a str>,
-    argument_at: usize,
 }
 
 struct Definition {
@@ -77,16 +66,16 @@ struct Definition {
     at: usize,
 }
 
-struct Parser<'a, 'r> {
+pub(super) struct Parser<'a, 'r> {
     text: &'a str,
     tokens: Tokens<'a>,
-    current: Placed<'a>,
-    next: Placed<'a>,
-    values: Vec<Value>,
-    marks: Vec<Mark<'a>>,
+    pub(super) current: Placed<'a>,
+    pub(super) next: Placed<'a>,
+    pub(super) values: Vec<Value>,
+    pub(super) marks: Vec<Mark<'a>>,
     names: HashMap<&'a str, Definition>,
-    foreign: HashMap<String, Tree>,
-    resolver: Option<&'r dyn Resolver>,
+    pub(super) foreign: HashMap<String, Tree>,
+    pub(super) resolver: Option<&'r dyn Resolver>,
     coordinates: [Tree; 3],
     /// The definition that is being read and the byte at which it begins.
     inside: &'a str,
@@ -116,12 +105,12 @@ impl<'a, 'r> Parser<'a, 'r> {
         })
     }
 
-    fn advance(&mut self) -> Result<(), Fault> {
+    pub(super) fn advance(&mut self) -> Result<(), Fault> {
         self.current = std::mem::replace(&mut self.next, self.tokens.next()?);
         Ok(())
     }
 
-    fn unexpected<T>(&self, expected: &str) -> Result<T, Fault> {
+    pub(super) fn unexpected<T>(&self, expected: &str) -> Result<T, Fault> {
         Err(Fault::syntax(self.current.at, self.current.token.described(), expected))
     }
 
@@ -197,12 +186,12 @@ impl<'a, 'r> Parser<'a, 'r> {
     }
 
     /// Counts an operation, an argument or a parenthesis.
-    fn grow(&mut self, at: usize) -> Result<(), Fault> {
+    pub(super) fn grow(&mut self, at: usize) -> Result<(), Fault> {
         self.count += 1;
         if self.count > MOST { Err(Fault::new(at, TextProblem::TooLarge { most: MOST })) } else { Ok(()) }
     }
 
-    fn begin(&mut self, mark: Mark<'a>) -> Result<(), Fault> {
+    pub(super) fn begin(&mut self, mark: Mark<'a>) -> Result<(), Fault> {
         self.grow(self.current.at)?;
         self.marks.push(mark);
         Ok(())
@@ -359,125 +348,6 @@ impl<'a, 'r> Parser<'a, 'r> {
                 }
             },
         })
-    }
-
-    /// Begins a call; its opening parenthesis is the current token.
-    fn begin_call(&mut self, function: &'a str, at: usize, arguments: Vec<Argument<'a>>) -> Result<bool, Fault> {
-        let call = Call { function, at, arguments, name: None, argument_at: at };
-        self.begin(Mark::Call(Box::new(call)))?;
-        self.advance()?;
-        if self.current.token.is(')') {
-            self.end_call()?;
-            return Ok(true);
-        }
-        self.argument_name()?;
-        Ok(false)
-    }
-
-    /// Reads `name:` before an argument, where there is one.
-    fn argument_name(&mut self) -> Result<(), Fault> {
-        let at = self.current.at;
-        let name = match self.current.token {
-            Token::Name(name) if self.next.token.is(':') => {
-                self.advance()?;
-                self.advance()?;
-                Some(name)
-            }
-            _ => None,
-        };
-        if let Some(Mark::Call(call)) = self.marks.last_mut() {
-            if name.is_none() && call.arguments.last().is_some_and(|before| before.name.is_some()) {
-                return self.unexpected("the name of a parameter, since the one before has one");
-            }
-            (call.name, call.argument_at) = (name, at);
-        }
-        Ok(())
-    }
-
-    /// Takes the last value as an argument of the call that is begun.
-    fn argument(&mut self) -> Result<(), Fault> {
-        self.grow(self.current.at)?;
-        match (self.marks.last_mut(), self.values.pop()) {
-            (Some(Mark::Call(call)), Some(value)) => {
-                call.arguments.push(Argument { name: call.name, value: value.closed(), at: call.argument_at });
-                Ok(())
-            }
-            (Some(_), _) => self.unexpected("an operator or \")\""),
-            (None, _) => self.unexpected("an operator or \";\""),
-        }
-    }
-
-    /// Completes the call that is begun; its closing parenthesis is the current token.
-    fn end_call(&mut self) -> Result<(), Fault> {
-        let Some(Mark::Call(call)) = self.marks.pop() else {
-            return self.unexpected("an operator or \";\"");
-        };
-        let Call { function, at, arguments, .. } = *call;
-        let value = match Callee::of(function) {
-            Some(callee) => {
-                let mut bound = callee.signature().bind(at, arguments)?;
-                let fault = |error| Fault::new(at, TextProblem::Parameter(error));
-                let value = callee.build(&mut bound).map_err(fault)?;
-                if let Value::Field(tree) = &value
-                    && let Err(CompileError::Parameter(error)) = tree.operation().check()
-                {
-                    return Err(fault(error));
-                }
-                value
-            }
-            None => Value::Field(self.foreign(function, at, arguments)?),
-        };
-        self.values.push(value);
-        self.advance()
-    }
-
-    fn foreign(&mut self, function: &'a str, at: usize, arguments: Vec<Argument<'a>>) -> Result<Tree, Fault> {
-        let mut arguments = arguments.into_iter();
-        let (Some(Argument { value: Value::Text(argument), name: None, .. }), resolver) =
-            (arguments.next(), self.resolver)
-        else {
-            return Err(self.unknown_function(function, at));
-        };
-        let mut call =
-            ForeignCall { function: function.to_owned(), argument: argument.to_string(), numbers: Vec::new() };
-        for argument in arguments {
-            let found = argument.value.described().to_owned();
-            match (argument.name, argument.value) {
-                (Some(name), Value::Number(value)) if value.is_finite() && call.number(name).is_none() => {
-                    call.numbers.push((name.to_owned(), value));
-                }
-                (name, _) => {
-                    let of = function.to_owned();
-                    let found = format!("{found} {}", name.unwrap_or("without a name"));
-                    let expected = "finite numbers with different names after the text".to_owned();
-                    return Err(Fault::new(argument.at, TextProblem::Argument { of, found, expected }));
-                }
-            }
-        }
-        let text = call.text();
-        if let Some(known) = self.foreign.get(&text) {
-            return Ok(known.clone());
-        }
-        let Some(resolver) = resolver else {
-            return Err(Fault::new(at, TextProblem::NoResolver { call: shortened(&call.to_string()) }));
-        };
-        let tree = match resolver.resolve(&call) {
-            Ok(resolved) => Tree::foreign(Arc::from(text.as_str()), resolved.field, resolved.exact),
-            Err(ResolveError::UnknownFunction) => return Err(self.unknown_function(function, at)),
-            Err(ResolveError::Failed { reason, category }) => {
-                let call = shortened(&call.to_string());
-                return Err(Fault::new(at, TextProblem::Foreign { call, reason, category }));
-            }
-        };
-        self.foreign.insert(text, tree.clone());
-        Ok(tree)
-    }
-
-    fn unknown_function(&self, function: &str, at: usize) -> Fault {
-        let foreign = self.resolver.map(Resolver::functions).unwrap_or_default();
-        let known = Callee::all().map(|callee| callee.signature().name).chain(foreign.iter().map(String::as_str));
-        let nearest = nearest(function, known);
-        Fault::new(at, TextProblem::UnknownFunction { name: shortened(function), nearest })
     }
 }
 

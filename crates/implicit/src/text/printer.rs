@@ -15,22 +15,32 @@ use crate::operator::{Binary, Unary};
 use crate::shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
 use crate::tree::{Axis, Operation, Tree, post_order};
 
-/// How deep an expression may be nested, and how many bytes long a part of one may be, before it gets a line of its own.
+/// How deep an expression may be nested, and how many bytes long a part of one may be, before it gets a line of its
+/// own.
 const DEEPEST: usize = 16;
 const LONGEST: usize = 100;
 
 /// The tree as text of the language, with the bounds if there are some.
 ///
-/// It reads back to an equal tree: names, numbers and fields from elsewhere included, if the parameters are in their ranges. Named
-/// parts become definitions, so do shared ones and parts of deep or long expressions, under names such as `_1`. The same tree
-/// gives the same text. Time and memory are in proportion to the nodes.
+/// It reads back to an equal tree: names, numbers and fields from elsewhere included, if the parameters are in their
+/// ranges. Named parts become definitions, so do shared ones and parts of deep or long expressions, under names such as
+/// `_1`. The same tree gives the same text. Time and memory are in proportion to the nodes.
 pub fn to_text(tree: &Tree, bounds: Option<&Aabb>) -> String {
     let order = post_order(tree);
     let mut uses: HashMap<usize, usize> = HashMap::new();
     for child in order.iter().flat_map(|tree| tree.operation().children()) {
         *uses.entry(child.address()).or_default() += 1;
     }
-    let mut printer = Printer { done: HashMap::new(), uses, names: HashSet::new(), generated: 0, out: String::new() };
+    let mut named = HashSet::new();
+    for node in &order {
+        if let Operation::Named(name, of) = node.operation()
+            && is_plain(name)
+        {
+            named.insert(of.address());
+        }
+    }
+    let names = HashSet::new();
+    let mut printer = Printer { done: HashMap::new(), uses, named, names, generated: 0, out: String::new() };
     if let Some(bounds) = bounds {
         let corners: Vec<f64> = bounds.min.to_array().into_iter().chain(bounds.max.to_array()).collect();
         let _ = writeln!(printer.out, "bounds({});", listed(&corners));
@@ -96,6 +106,8 @@ fn number(value: f64) -> String {
 struct Printer<'a> {
     done: HashMap<usize, Written>,
     uses: HashMap<usize, usize>,
+    /// The nodes of which a name is the next thing said.
+    named: HashSet<usize>,
     /// Those that definitions have taken.
     names: HashSet<&'a str>,
     generated: usize,
@@ -132,7 +144,8 @@ impl<'a> Printer<'a> {
     fn unless_long(&mut self, address: usize, root: &Tree, written: Written) -> Written {
         let shared = self.uses.get(&address).is_some_and(|&uses| uses > 1);
         let long = written.depth > DEEPEST || written.text.len() > LONGEST;
-        if !shared && (!long || address == root.address()) {
+        let own_line = address == root.address() || self.named.contains(&address);
+        if !shared && (!long || own_line) {
             return written;
         }
         self.generated += 1;

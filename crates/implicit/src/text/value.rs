@@ -12,7 +12,8 @@ use crate::tree::{Operation, Tree};
 
 /// What an expression stands for.
 ///
-/// Numbers are computed as they are read, so that they can be parameters; where a field is needed, a number is the constant field.
+/// Numbers are computed as they are read, so that they can be parameters; where a field is needed, a number is the
+/// constant field.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Number(f64),
@@ -94,8 +95,8 @@ impl Infix {
     /// How tightly it binds.
     pub(super) fn level(self) -> u8 {
         match self {
-            Self::Set(SetOperation::Union | SetOperation::Difference) => 1,
             Self::Set(SetOperation::Intersection) => 2,
+            Self::Set(SetOperation::Union | SetOperation::Difference) => 1,
             Self::Arithmetic(Binary::Multiply | Binary::Divide) => 4,
             Self::Arithmetic(_) => 3,
             Self::Power => POWER,

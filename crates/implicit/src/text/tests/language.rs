@@ -227,7 +227,6 @@ fn barths_sextic_is_its_formula() {
     let text = include_bytes!("../../../../../data/implicit/barth_sextic.shape");
     let parsed = parse(text, None).unwrap();
     let program = parsed.tree.compile().unwrap();
-    let bounds = parsed.bounds.unwrap();
     let phi = (1.0 + 5_f64.sqrt()) / 2.0;
     let mut numbers = Numbers::new(5);
     for _ in 0..1000 {
@@ -238,6 +237,73 @@ fn barths_sextic_is_its_formula() {
         let sextic = 4.0 * planes - (1.0 + 2.0 * phi) * sphere * sphere;
         // Cut off by a ball; a sum of a few dozen terms of size 300.
         let expected = (-sextic).max(p.length() - 1.9);
-        assert!((program.value(p) - expected).abs() < 1e-9 || bounds.is_empty(), "{p} {} {expected}", program.value(p));
+        assert!((program.value(p) - expected).abs() < 1e-9, "{p} {} {expected}", program.value(p));
+    }
+    assert!(parsed.bounds.is_some_and(|bounds| bounds.contains(DVec3::splat(1.9 / 3.0_f64.sqrt()))));
+    // Twenty of its double points are the corners of a dodecahedron of edge 2/φ: value and gradient vanish there.
+    let mut nodes: Vec<DVec3> = Vec::new();
+    for (a, b) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        nodes.extend([DVec3::new(1.0, a, b), DVec3::new(-1.0, a, b)]);
+        let (long, short) = (a * phi, b / phi);
+        nodes.extend([DVec3::new(0.0, short, long), DVec3::new(long, 0.0, short), DVec3::new(short, long, 0.0)]);
+    }
+    let flat =
+        nodes.iter().filter(|&&node| program.value(node).abs() < 1e-12 && program.gradient(node).length() < 1e-12);
+    assert_eq!((nodes.len(), flat.count()), (20, 20));
+}
+
+/// Text costs nothing once it is read: its program has the steps of one made by methods, in the same order.
+#[test]
+fn programs_of_text_are_those_of_code() {
+    for tree in crate::laws::samples() {
+        let again = read(&to_text(&tree, None));
+        let (written, parsed) = (tree.compile().unwrap(), again.compile().unwrap());
+        let (steps, result) = written.steps();
+        assert_eq!((format!("{steps:?}"), result), (format!("{:?}", parsed.steps().0), parsed.steps().1));
+    }
+}
+
+/// Every function stands on the page with its parameters, and the page's examples can be read.
+#[test]
+fn the_page_describes_every_function() {
+    let page = include_str!("../../../../../docs/formats/shape_language.md");
+    for callee in super::super::functions::Callee::all() {
+        let signature = callee.signature().described();
+        assert!(page.contains(&format!("`{signature}`")), "{signature}");
+    }
+    let examples: Vec<&str> = page.split("```shape\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(examples.len() >= 5);
+    for example in examples {
+        read(example);
+    }
+}
+
+#[test]
+fn the_files_of_the_repository_are_shapes() {
+    for text in [
+        include_str!("../../../../../data/implicit/bracket.shape"),
+        include_str!("../../../../../data/implicit/blended_cylinders.shape"),
+        include_str!("../../../../../data/implicit/barth_sextic.shape"),
+    ] {
+        let parsed = parse(text.as_bytes(), None).unwrap();
+        let again = parse(to_text(&parsed.tree, parsed.bounds.as_ref()).as_bytes(), None).unwrap();
+        assert!(again.tree == parsed.tree && again.bounds == parsed.bounds);
+        // The bounds hold the shape: its surface does not reach their faces.
+        let (program, bounds) = (parsed.tree.compile().unwrap(), parsed.bounds.unwrap());
+        let mut numbers = Numbers::new(1);
+        let mut inside = 0;
+        for _ in 0..3000 {
+            let part = (numbers.point(0.5) + 0.5).clamp(DVec3::ZERO, DVec3::ONE);
+            let point = bounds.min + part * bounds.size();
+            inside += usize::from(program.value(point) < 0.0);
+            for axis in 0..3 {
+                for side in [bounds.min, bounds.max] {
+                    let mut on_face = point;
+                    on_face[axis] = side[axis];
+                    assert!(program.value(on_face) > 0.0, "{on_face}");
+                }
+            }
+        }
+        assert!(inside > 100, "{inside}");
     }
 }

@@ -1,7 +1,8 @@
 //! Lists of arithmetic steps, as the program fidget keeps them in `.vm` files.
 //!
-//! A line is a name, an opcode and the names of its operands: `_2 add _0 _1`. `const` is followed by a number; `var-x`, `var-y` and
-//! `var-z` are the coordinates. Empty lines and lines that begin with `#` say nothing. The last line is the field.
+//! A line is a name, an opcode and the names of its operands: `_2 add _0 _1`. `const` is followed by a number; `var-x`,
+//! `var-y` and `var-z` are the coordinates. Empty lines and lines that begin with `#` say nothing. The last line is the
+//! field.
 
 mod error;
 mod read;

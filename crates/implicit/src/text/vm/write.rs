@@ -10,8 +10,9 @@ use crate::tree::{Operation, Tree, post_order};
 
 /// The tree as a list of arithmetic steps: those of its program.
 ///
-/// [`parse_vm`](super::parse_vm) reads it back to a tree of the same values up to rounding; names, and what the parts mean, are
-/// lost. `pow` is an opcode that other programs may not know; it stands only where the tree has powers that are not whole.
+/// [`parse_vm`](super::parse_vm) reads it back to a tree of the same values up to rounding; names, and what the parts
+/// mean, are lost. `pow` is an opcode that other programs may not know; it stands only where the tree has powers that
+/// are not whole.
 ///
 /// # Errors
 /// A field from elsewhere, or a tree that does not compile.
