@@ -9,10 +9,16 @@ mod laws;
 mod operator;
 mod power;
 mod program;
+mod query;
 mod shapes;
 mod tree;
 
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
+pub use query::{
+    AdaptiveMarchingSquares, Certainty, Classification, CrossingKind, FieldRays, PlaneCurves, PlaneWindow, PointPlace,
+    ProjectError, Projection, QueryError, RayCrossing, RayCrossings, RayIntervals, RegularClassification, SectionError,
+    Side, SphereTracing, TraceEnd, Traced, classify, classify_exact, classify_regularised, project, section,
+};
 pub use shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
 pub use tree::{Axis, Foreign, Meaning, Nature, Operation, Tree, post_order};
