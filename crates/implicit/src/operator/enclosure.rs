@@ -131,7 +131,13 @@ impl Enclosure {
             || other.undefined
             || (self.hi == f64::INFINITY && other.lo == f64::NEG_INFINITY)
             || (self.lo == f64::NEG_INFINITY && other.hi == f64::INFINITY);
-        Self::outward(self.lo + other.lo, self.hi + other.hi).or_undefined(undefined)
+        let sum = Self::outward(self.lo + other.lo, self.hi + other.hi).or_undefined(undefined);
+        sum.not_below_0_if(self.lo >= 0.0 && other.lo >= 0.0)
+    }
+
+    /// Rounding makes no sum or product of numbers from 0 on negative; a root of it would else be undefined.
+    fn not_below_0_if(self, holds: bool) -> Self {
+        if holds { self.at_least(0.0) } else { self }
     }
 
     pub(super) fn times(self, other: Self) -> Self {
@@ -151,7 +157,7 @@ impl Enclosure {
         ];
         let lo = products.into_iter().fold(f64::INFINITY, f64::min);
         let hi = products.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::outward(lo, hi).or_undefined(undefined)
+        Self::outward(lo, hi).or_undefined(undefined).not_below_0_if(self.lo >= 0.0 && other.lo >= 0.0)
     }
 
     pub(super) fn over(self, other: Self) -> Self {
@@ -243,6 +249,13 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn sums_of_squares_have_roots() {
+        let square = Enclosure::new(-1.0, 2.0).square();
+        let sum = square.plus(square).plus(square.times(square));
+        assert!(sum.lo == 0.0 && !sum.within(0.0, f64::INFINITY).undefined);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::Side;
 /// A root within two ends of different sides, by ITP (Oliveira and Takahashi, 2021): no more steps than bisection plus one, and for
 /// smooth functions few.
 ///
-/// The place where the side changes is found to within a few units in the last place. That is a zero of the function where it is
+/// The place where the side changes is found to within a few units in the last place of the larger end. That is a zero of the function where it is
 /// continuous there, a jump or the border of its domain otherwise. The end with the smaller value is taken.
 pub(super) fn side_change(mut function: impl FnMut(f64) -> f64, start: (f64, f64), end: (f64, f64)) -> f64 {
     let ((mut a, mut at_a), (mut b, mut at_b)) = (start, end);
@@ -60,7 +60,7 @@ mod tests {
         for (function, a, b, expected) in [
             ((|x| x * x - 2.0) as fn(f64) -> f64, 0.0, 2.0, 2.0_f64.sqrt()),
             (|x| 2.0 - x * x, 0.0, 2.0, 2.0_f64.sqrt()),
-            (|x| x.exp() - 1e6, -5.0, 100.0, 1e6_f64.ln()),
+            (|x| x.exp() - 1e6, -5.0, 20.0, 1e6_f64.ln()),
             (|x| (x - 1.5).powi(9), 0.0, 4.0, 1.5),
             (|x| x - 1e9 - 0.25, 0.0, 3e9, 1e9 + 0.25),
             (|x| if x < 0.3 { -1.0 } else { 7.0 }, 0.0, 1.0, 0.3),
@@ -68,7 +68,7 @@ mod tests {
         ] {
             let (found, calls) = root(function, a, b);
             // The ninth power underflows near its root.
-            let room = if expected == 1.5 { 1e-30 } else { 0.0 } + 4.0 * f64::EPSILON * expected;
+            let room = if expected == 1.5 { 1e-30 } else { 0.0 } + 4.0 * f64::EPSILON * b;
             assert!((found - expected).abs() <= room, "{found} {expected}");
             assert!(calls <= 64, "{calls}");
         }

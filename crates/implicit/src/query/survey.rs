@@ -47,14 +47,21 @@ impl Survey {
                 }
             }
         }
+        // Thin parts near the surface that passes the middle.
+        for halvings in 1..=12 {
+            for arm in [arm, -arm] {
+                if along != DVec3::ZERO && !survey.is_decided() {
+                    survey.saw(bounds.side_at(center + along * (arm * 0.5_f64.powi(halvings))));
+                }
+            }
+        }
         let cube = Aabb { min: center - DVec3::splat(radius), max: center + DVec3::splat(radius) };
         let mut boxes = vec![cube];
         for level in 0..=LEVELS {
             let mut undecided = Vec::new();
             for region in boxes {
                 let middle = region.center();
-                let within = &bounds.field;
-                let values = bounds.over(&AsField(*within), &region, middle, reach(&region, middle));
+                let values = bounds.over(&AsField(bounds.field), &region, middle, reach(&region, middle));
                 if Side::of_bounds(values).is_none() {
                     let nearest = center.clamp(region.min, region.max);
                     let inner = if middle.distance(center) <= radius { middle } else { nearest };

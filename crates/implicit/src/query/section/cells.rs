@@ -221,12 +221,15 @@ impl<'a, F: Field + ?Sized> Cells<'a, F> {
                 let (start, end) = if a.leaving { (a.edge, b.edge) } else { (b.edge, a.edge) };
                 let (start, end) = (self.crossing(start), self.crossing(end));
                 let chord = end - start;
-                let left = chord.perp().normalize_or_zero() * self.fineness.tolerance;
+                // A corner of the curve between two of the places lies at most a third farther off than the places show.
+                let arm = chord.perp().normalize_or_zero() * (self.fineness.tolerance * 0.75);
+                // Shorter arms are for what is thinner than the tolerance.
+                let passes = |place: DVec2, arm: DVec2| {
+                    self.window.side(place + arm) == Side::Inside && self.window.side(place - arm) == Side::Outside
+                };
                 [0.5, 0.25, 0.75].into_iter().all(|part| {
                     let place = start + chord * part;
-                    let straddled = self.window.side(place + left) == Side::Inside
-                        && self.window.side(place - left) == Side::Outside;
-                    straddled || self.window.value(place).abs() <= self.fineness.tolerance * self.window.slope(place)
+                    (0..7).any(|halvings| passes(place, arm * 0.25_f64.powi(halvings)))
                 })
             }
             // Two pieces of the curve or more: which belong together shows in smaller cells.

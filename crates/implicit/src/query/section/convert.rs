@@ -91,7 +91,10 @@ impl<F: Field + ?Sized> Convert<PlaneWindow<'_, F>> for AdaptiveMarchingSquares 
                          most its diagonal apart";
             (Deviation::AtMost(bound), basis)
         } else {
-            (Deviation::Estimated(self.chord_tolerance), "sides and slopes at three places of each chord")
+            (
+                Deviation::Estimated(self.chord_tolerance),
+                "the sides of the field at three places of each chord, a tolerance to its left and right",
+            )
         };
         let mut report = Report::new(Self::NAME, deviation, basis);
         if let Some(at) = found.first_uncertain {

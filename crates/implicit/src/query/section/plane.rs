@@ -50,13 +50,6 @@ impl<'a, F: Field + ?Sized> PlaneWindow<'a, F> {
         Side::of(self.value(place))
     }
 
-    /// How fast the value changes along the plane.
-    pub(super) fn slope(&self, place: DVec2) -> f64 {
-        let gradient = self.field.gradient(self.frame.position(place.extend(0.0)));
-        let [x, y, _] = self.frame.axes();
-        DVec2::new(gradient.dot(x), gradient.dot(y)).length()
-    }
-
     /// A box in space that holds every point computed between two corners of the plane.
     pub(super) fn region(&self, lo: DVec2, hi: DVec2) -> Aabb {
         let corners = [lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)];
