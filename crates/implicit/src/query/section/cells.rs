@@ -67,6 +67,8 @@ pub(super) struct Cells<'a, F: ?Sized> {
     pub(super) cells: Vec<Cell>,
     /// How many cells were looked at.
     pub(super) asked: u64,
+    /// How many cells were kept at any time; their corners stay.
+    kept: u64,
     reserved: Vec<Reservation>,
 }
 
@@ -87,6 +89,7 @@ impl<'a, F: Field + ?Sized> Cells<'a, F> {
             crossings: HashMap::new(),
             cells: Vec::new(),
             asked: 0,
+            kept: 0,
             reserved: Vec::new(),
         };
         all.plant()?;
@@ -167,9 +170,10 @@ impl<'a, F: Field + ?Sized> Cells<'a, F> {
     }
 
     fn keep(&mut self, cell: Cell) -> Result<(), ConvertError> {
-        if (self.cells.len() as u64).is_multiple_of(BLOCK) {
+        if self.kept.is_multiple_of(BLOCK) {
             self.reserved.push(self.exec.reserve_elements(BLOCK, CELL_BYTES)?);
         }
+        self.kept += 1;
         let side = self.side(cell.level);
         let [x, y] = cell.corner;
         for corner in [[x, y], [x + side, y], [x, y + side], [x + side, y + side]] {
