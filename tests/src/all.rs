@@ -47,6 +47,7 @@ mod plane;
 mod properties;
 mod query_laws;
 mod regressions;
+mod regularised_sets;
 mod round_trips;
 mod same_bits;
 mod self_intersection;

@@ -291,6 +291,9 @@ fn numeric_options_survive_absurd_values() {
     }
 }
 
+/// Converters whose source is no kind of geometry, with their names: a window of a plane in which a field is seen.
+const UNREGISTERED: [(&str, &str); 1] = [("AdaptiveMarchingSquares", "adaptive-marching-squares")];
+
 #[test]
 fn every_converter_is_registered_documented_and_shown() {
     let mut found = Vec::new();
@@ -306,16 +309,20 @@ fn every_converter_is_registered_documented_and_shown() {
     assert!(found.len() >= registry().len());
     for name in found {
         let known = registry().iter().any(|converter| converter.type_name == name);
-        assert!(known, "{name} converts but is not in the registry");
+        assert!(
+            known || UNREGISTERED.iter().any(|(other, ..)| *other == name),
+            "{name} converts but is not in the registry"
+        );
     }
     let examples = text("examples/Cargo.toml");
-    for converter in registry() {
-        let word = converter.name.replace('-', "_");
+    let registered = registry().iter().map(|converter| converter.name);
+    for name in registered.chain(UNREGISTERED.iter().map(|(_, name)| *name)) {
+        let word = name.replace('-', "_");
         for path in [format!("docs/algorithms/{word}.md"), format!("examples/{word}.rs")] {
-            assert!(root().join(&path).exists(), "{} has no {path}", converter.name);
+            assert!(root().join(&path).exists(), "{name} has no {path}");
         }
         assert!(examples.contains(&format!("path = \"{word}.rs\"")), "examples/Cargo.toml lacks {word}");
         let pages = text(&format!("docs/algorithms/{word}.md"));
-        assert!(pages.contains(converter.name), "docs/algorithms/{word}.md does not name {}", converter.name);
+        assert!(pages.contains(name), "docs/algorithms/{word}.md does not name {name}");
     }
 }

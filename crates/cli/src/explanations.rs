@@ -163,6 +163,34 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "E-plane-vertex",
         "A vertex could not be put between edges that cross or nearly coincide: the library that keeps the triangulation found no place for it. Please report the input; points moved apart or fewer edges will help until then.",
     ),
+    (
+        "E-project-gradient",
+        "A point is to be moved to a surface along the gradient, and there is none: the middle of a ball, or a ridge. Start elsewhere, or look along a ray.",
+    ),
+    (
+        "E-project-stuck",
+        "A point moved along the gradient came to a place where values become no smaller, and it is not the surface. Start nearer to the surface, or look along a ray.",
+    ),
+    (
+        "E-project-undefined",
+        "A point is to be moved to a surface, and the field is not a number there. Start where it is defined.",
+    ),
+    (
+        "E-query-lipschitz",
+        "Sphere tracing needs to know how fast a field's values change at most, and this field does not say. Intersect by intervals instead.",
+    ),
+    (
+        "E-query-point",
+        "A point, or a corner of a box, of a question to a field is not finite. Give finite coordinates.",
+    ),
+    (
+        "E-query-reach",
+        "A ray is to be intersected by intervals or traced, and its reach does not end or is not in order. Cut it off at the shape's bounding box.",
+    ),
+    (
+        "E-query-tolerance",
+        "A tolerance of a question to a field is negative, infinite or not a number. Give a length from 0 on.",
+    ),
     ("E-ray-direction", "A ray has a direction without a length, or coordinates that are not finite."),
     ("E-render-count", "There are more triangles or positions in a picture than 32-bit ids can tell apart."),
     ("E-render-empty", "There is no triangle to draw."),
@@ -174,17 +202,41 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-rotation-angle", "A rotation's angle is infinite or not a number."),
     ("E-rotation-axis", "A rotation's axis has no length."),
     ("E-rotation-matrix", "A matrix is no rotation: its columns are not perpendicular unit vectors, or it mirrors."),
+    (
+        "E-section-cells",
+        "A plane section would look at more cells than max_cells allows. Take larger cells, a larger tolerance or a smaller window, or allow more.",
+    ),
+    (
+        "E-section-fine",
+        "A cell size or chord tolerance is too small for the window: cells would be halved more than 40 times. Take a larger one, or a smaller window.",
+    ),
+    (
+        "E-section-window",
+        "The window of a plane section is empty or not finite. Its second corner must lie above and to the right of the first.",
+    ),
     ("E-shape-kind", "A shape is of another kind than an operation takes; convert it first."),
-    ("E-shape-text-argument", "A function or operator in a text of a shape has too many, too few or the wrong kind of arguments."),
+    (
+        "E-shape-text-argument",
+        "A function or operator in a text of a shape has too many, too few or the wrong kind of arguments.",
+    ),
     ("E-shape-text-encoding", "A text of a shape has bytes that are not UTF-8; save it as UTF-8."),
     ("E-shape-text-foreign", "A field from elsewhere that a text of a shape names could not be made."),
     ("E-shape-text-function", "A text of a shape calls a function that does not exist."),
     ("E-shape-text-name", "A text of a shape uses a name that nothing defines; names of functions need parentheses."),
     ("E-shape-text-number", "A number in a text of a shape is larger than double precision holds."),
-    ("E-shape-text-order", "A text of a shape uses a name before its definition, or in a circle; definitions come first."),
+    (
+        "E-shape-text-order",
+        "A text of a shape uses a name before its definition, or in a circle; definitions come first.",
+    ),
     ("E-shape-text-parameter", "A parameter in a text of a shape is outside its range."),
-    ("E-shape-text-resolver", "A text of a shape names a field from elsewhere, such as a file, where nothing looks such names up."),
-    ("E-shape-text-size", "A text of a shape has more operations, arguments or parentheses than a program may have steps."),
+    (
+        "E-shape-text-resolver",
+        "A text of a shape names a field from elsewhere, such as a file, where nothing looks such names up.",
+    ),
+    (
+        "E-shape-text-size",
+        "A text of a shape has more operations, arguments or parentheses than a program may have steps.",
+    ),
     ("E-shape-text-syntax", "A word or sign cannot stand where it does in a text of a shape."),
     ("E-shape-text-twice", "A text of a shape defines a name twice, or one of x, y, z, pi and deg."),
     ("E-shape-unit", "A unit of length is not a positive number of metres."),
@@ -251,7 +303,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-usage-threads", "That many threads could not be started."),
     ("E-vm-empty", "A list of steps has no step."),
     ("E-vm-encoding", "A list of steps has bytes that are not UTF-8."),
-    ("E-vm-foreign", "A field from elsewhere, such as a mesh, has no arithmetic steps and cannot be written as a list of them."),
+    (
+        "E-vm-foreign",
+        "A field from elsewhere, such as a mesh, has no arithmetic steps and cannot be written as a list of them.",
+    ),
     ("E-vm-name", "A step has an operand that no line above defines."),
     ("E-vm-number", "A constant in a list of steps is not a number in double precision."),
     ("E-vm-opcode", "A list of steps has an opcode that does not exist."),
@@ -483,6 +538,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "The refinement used up the vertices that it may add before all triangles were as wanted. Raise max_added, or ask for a smaller angle or larger area.",
     ),
     ("W-refine-small", "Triangles as small as the rounding of their coordinates stay as they are."),
+    (
+        "W-section-uncertain",
+        "Some cells of a plane section may hold parts of the curve that were not found: bounds of the field do not show that they are free, and no corner lies on another side. Touching or double curves do this, and fields without bounds.",
+    ),
+    (
+        "W-section-undefined",
+        "The field is not a number on one side of a curve of a plane section. That side counts as outside, and the curve follows the border of where the field is defined.",
+    ),
     (
         "W-surface-nets-edges",
         "Edges of the result have more than two triangles, because two pieces of the surface pass through one cell and share its vertex. The method manifold-surface-nets gives each piece a vertex of its own.",

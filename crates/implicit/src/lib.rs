@@ -11,6 +11,7 @@ mod laws;
 mod operator;
 mod power;
 mod program;
+mod query;
 mod shapes;
 mod text;
 mod tree;
@@ -19,6 +20,11 @@ pub use curve_distance::{CurveDistance, CurveError};
 pub use implicit::{BoundsError, Implicit};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
+pub use query::{
+    AdaptiveMarchingSquares, Certainty, Classification, CrossingKind, FieldRays, PlaneCurves, PlaneWindow, PointPlace,
+    ProjectError, Projection, QueryError, RayCrossing, RayCrossings, RayIntervals, RegularClassification, SectionError,
+    Side, SphereTracing, TraceEnd, Traced, classify, classify_exact, classify_regularised, project, section,
+};
 pub use shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
 pub use text::{
     ForeignCall, Parsed, ResolveError, Resolved, Resolver, TextError, TextProblem, VmError, VmProblem, VmWriteError,

@@ -8,7 +8,7 @@ use shapeloom_shape::{Kind, Shape, UpAxis};
 
 use crate::{
     ReadContext, ReadError, ReadShape, WriteContext, WriteError, asc, bpt, dem, gltf, implicit_text, metaimage, nrrd,
-    obj, off, pgm, ply, png, raw, slc, stl, tiff, vti, vtk,
+    obj, off, pgm, ply, png, raw, slc, stl, svg, tiff, vti, vtk,
 };
 
 /// Reads a whole file. Errors need not name the input: [`read`](crate::read()) does.
@@ -201,6 +201,7 @@ pub static FORMATS: &[Format] = &[
     metaimage::FORMAT,
     slc::FORMAT,
     raw::FORMAT,
+    svg::FORMAT,
     implicit_text::VM,
     implicit_text::SHAPE,
 ];

@@ -57,6 +57,7 @@ mod siblings;
 mod sink;
 mod slc;
 mod stl;
+mod svg;
 #[cfg(test)]
 mod test_data;
 mod tiff;

@@ -78,6 +78,10 @@ mod tests {
         Part::new(VoxelGrid::try_new(lattice, Samples::U8(vec![7; 8]), Quantity::Density).unwrap())
     }
 
+    fn line() -> Part {
+        Part::new(shapeloom_mesh::Polyline::new(vec![DVec3::ZERO, DVec3::X], false))
+    }
+
     fn polygon() -> Part {
         Part::new(PolyMesh::from_faces(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]).unwrap())
     }
@@ -117,6 +121,7 @@ mod tests {
         for format in FORMATS.iter().filter(|format| format.writes.is_some()) {
             let shape = Shape::new(match format.kinds {
                 kinds if kinds.contains(&Kind::TriMesh) => triangle(),
+                kinds if kinds.contains(&Kind::Polyline) => line(),
                 kinds if kinds.contains(&Kind::HeightField) => heights(),
                 kinds if kinds.contains(&Kind::VoxelGrid) => grid(),
                 _ => surface(),

@@ -168,7 +168,14 @@ impl Enclosure {
             || (!self.both_finite(other)
                 && ((self.hi == f64::INFINITY && other.lo == f64::NEG_INFINITY)
                     || (self.lo == f64::NEG_INFINITY && other.hi == f64::INFINITY)));
-        Self::outward(self.lo + other.lo, self.hi + other.hi).or_undefined(undefined)
+        let sum = Self::outward(self.lo + other.lo, self.hi + other.hi).or_undefined(undefined);
+        sum.not_below_0_if(self.lo >= 0.0 && other.lo >= 0.0)
+    }
+
+    /// Rounding makes no sum or product of numbers from 0 on negative; a root of it would else be undefined.
+    #[inline(always)]
+    fn not_below_0_if(self, holds: bool) -> Self {
+        if holds { self.at_least(0.0) } else { self }
     }
 
     #[inline(always)]
@@ -180,6 +187,7 @@ impl Enclosure {
         let (c, d) = (self.hi * other.lo, self.hi * other.hi);
         Self::outward(least(least(a, b), least(c, d)), most(most(a, b), most(c, d)))
             .or_undefined(self.undefined || other.undefined)
+            .not_below_0_if(self.lo >= 0.0 && other.lo >= 0.0)
     }
 
     fn times_any(self, other: Self) -> Self {
@@ -192,7 +200,9 @@ impl Enclosure {
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
         let (a, b) = (product(self.lo, other.lo), product(self.lo, other.hi));
         let (c, d) = (product(self.hi, other.lo), product(self.hi, other.hi));
-        Self::outward(least(least(a, b), least(c, d)), most(most(a, b), most(c, d))).or_undefined(undefined)
+        Self::outward(least(least(a, b), least(c, d)), most(most(a, b), most(c, d)))
+            .or_undefined(undefined)
+            .not_below_0_if(self.lo >= 0.0 && other.lo >= 0.0)
     }
 
     pub(super) fn over(self, other: Self) -> Self {
@@ -302,6 +312,13 @@ mod tests {
         }
         assert!(Enclosure::outward(f64::INFINITY, f64::INFINITY).undefined);
         assert_eq!(Enclosure::outward(2.0, f64::INFINITY).hi, f64::INFINITY);
+    }
+
+    #[test]
+    fn sums_of_squares_have_roots() {
+        let square = Enclosure::new(-1.0, 2.0).square();
+        let sum = square.plus(square).plus(square.times(square));
+        assert!(sum.lo == 0.0 && !sum.within(0.0, f64::INFINITY).undefined);
     }
 
     #[test]

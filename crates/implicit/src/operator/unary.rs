@@ -154,7 +154,7 @@ impl Unary {
             Self::Negate => a.negate(),
             Self::Absolute => a.absolute(),
             Self::Reciprocal => Enclosure::exactly(1.0).over(a),
-            Self::SquareRoot => a.within(0.0, f64::INFINITY).rising(f64::sqrt, 1),
+            Self::SquareRoot => a.within(0.0, f64::INFINITY).rising(f64::sqrt, 1).at_least(0.0),
             Self::Square => a.square(),
             Self::Sine => a.sine(),
             Self::Cosine => a.cosine(),
