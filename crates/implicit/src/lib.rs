@@ -4,14 +4,18 @@
 //! [`Program`] of it, which evaluators run: [`PointEvaluator`] in double precision with derivatives, [`BatchEvaluator`] for many points in
 //! single precision, [`IntervalEvaluator`] for proven bounds over boxes. A program is a [`Field`](shapeloom_core::Field) too.
 
+mod blobs;
 #[cfg(test)]
 mod laws;
+mod molecule;
 mod operator;
 mod power;
 mod program;
 mod shapes;
 mod tree;
 
+pub use blobs::{Blob, BlobForm, Blobs, BlobsError};
+pub use molecule::{Atom, AtomBlobs, Element, Molecule};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
 pub use shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
