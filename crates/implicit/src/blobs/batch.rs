@@ -3,8 +3,8 @@
 use std::cell::Cell;
 
 use multiversion::multiversion;
-use shapeloom_core::glam::DVec3;
 use shapeloom_core::Aabb;
+use shapeloom_core::glam::DVec3;
 
 use super::sum::Sum;
 use super::term::{Fall, ROOM, Term};

@@ -14,8 +14,6 @@ mod sum;
 mod term;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod tests;
 
 pub use error::BlobsError;
 pub use field::Blobs;

@@ -70,13 +70,13 @@ impl Term {
             return None;
         }
         let reach = match form {
-            BlobForm::Blinn => (decay / second).sqrt(),
+            // The quotient alone would overflow for the smallest decays.
+            BlobForm::Blinn => decay.sqrt() / second.sqrt(),
             _ => first * (decay / second).sqrt(),
         };
         let floor = size * (shift - decay).exp();
         Some(Self { center: blob.center, reach, scale: 1.0 / reach, size, shift, decay, floor })
     }
-
 
     /// A box around all points that the term reaches, with [`ROOM`].
     pub(super) fn bounds(&self) -> Aabb {

@@ -83,8 +83,10 @@ mod tests {
     #[test]
     fn radii_are_the_published_ones() {
         let radius = |symbol: &str| Element::from_symbol(symbol).unwrap().van_der_waals_radius();
-        let bondi = [("H", 1.2), ("C", 1.7), ("N", 1.55), ("O", 1.52), ("S", 1.8), ("P", 1.8), ("I", 1.98), ("Xe", 2.16)];
-        let alvarez = [("Li", 2.12), ("Mg", 2.51), ("Fe", 2.44), ("Zn", 2.39), ("Ba", 3.03), ("Gd", 2.83), ("Au", 2.32)];
+        let bondi =
+            [("H", 1.2), ("C", 1.7), ("N", 1.55), ("O", 1.52), ("S", 1.8), ("P", 1.8), ("I", 1.98), ("Xe", 2.16)];
+        let alvarez =
+            [("Li", 2.12), ("Mg", 2.51), ("Fe", 2.44), ("Zn", 2.39), ("Ba", 3.03), ("Gd", 2.83), ("Au", 2.32)];
         let late = [("Bi", 2.54), ("U", 2.71), ("Es", 2.7), ("Lu", 2.74), ("Sm", 2.9)];
         for (symbol, published) in bondi.into_iter().chain(alvarez).chain(late) {
             assert_eq!(radius(symbol), Some(published), "{symbol}");

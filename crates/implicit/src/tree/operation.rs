@@ -148,11 +148,9 @@ impl Operation {
     /// The trees that it is made of, in order.
     pub fn children(&self) -> impl DoubleEndedIterator<Item = &Tree> {
         let (few, many): ([Option<&Tree>; 4], &[Tree]) = match self {
-            Self::Constant(_)
-            | Self::Coordinate(_)
-            | Self::Primitive(_)
-            | Self::Foreign(_)
-            | Self::Blobs(_) => ([None; 4], &[]),
+            Self::Constant(_) | Self::Coordinate(_) | Self::Primitive(_) | Self::Foreign(_) | Self::Blobs(_) => {
+                ([None; 4], &[])
+            }
             Self::Unary(_, a)
             | Self::Power(a, _)
             | Self::Complement(a)
@@ -173,11 +171,9 @@ impl Operation {
     /// The trees that it is made of, taken out.
     pub(super) fn into_children(self) -> Vec<Tree> {
         match self {
-            Self::Constant(_)
-            | Self::Coordinate(_)
-            | Self::Primitive(_)
-            | Self::Foreign(_)
-            | Self::Blobs(_) => Vec::new(),
+            Self::Constant(_) | Self::Coordinate(_) | Self::Primitive(_) | Self::Foreign(_) | Self::Blobs(_) => {
+                Vec::new()
+            }
             Self::Unary(_, a)
             | Self::Power(a, _)
             | Self::Complement(a)
