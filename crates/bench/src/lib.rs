@@ -3,6 +3,7 @@
 //! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
+mod blobs;
 mod closest;
 mod delaunay2d;
 mod files;
@@ -103,6 +104,8 @@ pub enum Task {
     /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an
     /// octree and back.
     Octree,
+    /// Blobs of molecules/7DDO.pdb and of atoms made up: on a lattice, beside all blobs at each point, and their surface.
+    Blobs,
 }
 
 impl Task {
@@ -164,7 +167,7 @@ impl Task {
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
-            Self::Octree => Vec::new(),
+            Self::Octree | Self::Blobs => Vec::new(),
         }
     }
 }
@@ -217,6 +220,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::SurfaceNets => surface_nets::run(&setting),
         Task::MeshToSdf => mesh_to_sdf::run(&setting),
         Task::Octree => octree::run(&setting),
+        Task::Blobs => blobs::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

@@ -53,6 +53,7 @@
 //! | [`mesh`] | triangle and polygon meshes, polylines, height fields, point clouds, attributes, primitives |
 //! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
+//! | [`implicit`] | fields as expression trees, compiled; blobs and molecules |
 //! | [`isosurface`] | surfaces where samples on a lattice reach a value |
 //! | [`voxels`] | grids of samples placed in space, and what makes them of meshes, points and fields |
 //! | [`shape`] | the dynamic shape of parts |
@@ -62,6 +63,7 @@
 
 pub use shapeloom_convert as convert;
 pub use shapeloom_core as core;
+pub use shapeloom_implicit as implicit;
 pub use shapeloom_io as io;
 pub use shapeloom_isosurface as isosurface;
 pub use shapeloom_judge as judge;
