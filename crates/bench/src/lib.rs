@@ -3,6 +3,7 @@
 //! `cargo run --release -p shapeloom-bench -- TASK [--data DIR] [--runs N] [--threads N] [--json]`. Inputs are loaded
 //! before the clock starts, unless reading is the task. Wall and CPU seconds are those of the fastest run.
 
+mod blobs;
 mod closest;
 mod delaunay2d;
 mod files;
@@ -106,6 +107,8 @@ pub enum Task {
     /// Signed distances of vol_blend.f32, vol_gyroid.f32 and tooth.nrrd (else of a small volume of a formula): all, and
     /// those of a narrow band.
     Redistance,
+    /// Blobs of molecules/7DDO.pdb and of atoms made up: on a lattice, beside all blobs at each point, and their surface.
+    Blobs,
 }
 
 impl Task {
@@ -169,7 +172,7 @@ impl Task {
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
-            Self::Octree | Self::Redistance => Vec::new(),
+            Self::Octree | Self::Redistance | Self::Blobs => Vec::new(),
         }
     }
 }
@@ -223,6 +226,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::MeshToSdf => mesh_to_sdf::run(&setting),
         Task::Octree => octree::run(&setting),
         Task::Redistance => redistance::run(&setting),
+        Task::Blobs => blobs::run(&setting),
     };
     // Always in a pool of its own, so that runs with and without a number of threads differ in nothing else.
     let threads = threads.map_or_else(rayon::current_num_threads, usize::from);

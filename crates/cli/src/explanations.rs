@@ -18,6 +18,28 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-boolean-volume",
         "The file is not one volume. Operations on two volumes need a grid of samples each; a mesh becomes one by mesh-to-distance or voxelize-mesh.",
+    ("E-blobs-center", "A centre of a blob is infinite or no number. Centres must be finite."),
+    ("E-blobs-count", "There are more blobs than a field may have, 2^31."),
+    (
+        "E-blobs-cutoff",
+        "The share of the threshold that blobs without an end may lose where they are cut off is above 0 and at most 0.1.",
+    ),
+    ("E-blobs-empty", "A field of blobs needs at least one blob."),
+    (
+        "E-blobs-parameter",
+        "A parameter of a blob is outside its range: radii and decays are above 0, amplitudes and weights other than 0, blobbiness above 0 and at most 64 (Blinn wrote it negative).",
+    ),
+    (
+        "E-blobs-strength",
+        "The sizes of the peaks of all blobs add up to more than 1e37, which single precision does not hold.",
+    ),
+    (
+        "E-blobs-threshold",
+        "The threshold of blobs must be above 0: far from all blobs their sum is 0, and all of space would be inside.",
+    ),
+    (
+        "E-blobs-unreachable",
+        "The threshold of blobs is at least the sum of all their peaks, so that nothing is inside anywhere.",
     ),
     ("E-bvh-count", "There are more triangles than 32-bit ids can tell apart."),
     ("E-bvh-finite", "A triangle's corner is infinite or not a number."),

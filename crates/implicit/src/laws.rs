@@ -122,6 +122,22 @@ pub(crate) fn samples() -> Vec<Tree> {
     ] {
         trees.push(block().translate(0.2, 0.1, 0.0).in_domain(domain));
     }
+    let mut numbers = Numbers::new(99);
+    for form in BlobForm::ALL {
+        for (count, radius) in [(5, 1.2), (300, 0.4)] {
+            let blob = |i: u32| {
+                let size = radius * (1.0 + 0.5 * f64::from(i % 3));
+                let strength = if i % 5 == 4 { -0.6 } else { 1.0 };
+                let [first, second] = match form {
+                    BlobForm::Blinn => [strength, 4.0 / (size * size)],
+                    BlobForm::Blobby => [size / 2.0, 1.5],
+                    BlobForm::Metaballs | BlobForm::SoftObjects => [size, strength],
+                };
+                Blob::new(numbers.point(1.6), first, second)
+            };
+            trees.push(Tree::blobs(Blobs::try_new(form, 0.5, (0..count).map(blob).collect()).unwrap()));
+        }
+    }
     for operator in Unary::ALL {
         trees.push((Tree::x() * 0.3 + Tree::y() * Tree::z() * 0.2).unary(operator));
     }

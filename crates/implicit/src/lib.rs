@@ -6,8 +6,10 @@
 
 mod curve_distance;
 mod implicit;
+mod blobs;
 #[cfg(test)]
 mod laws;
+mod molecule;
 mod operator;
 mod power;
 mod program;
@@ -18,6 +20,8 @@ mod tree;
 
 pub use curve_distance::{CurveDistance, CurveError};
 pub use implicit::{BoundsError, Implicit};
+pub use blobs::{Blob, BlobForm, Blobs, BlobsError};
+pub use molecule::{Atom, AtomBlobs, Element, Molecule};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
 pub use query::{

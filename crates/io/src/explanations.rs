@@ -167,6 +167,17 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
         "The element type of a MetaImage is one of MET_CHAR, MET_UCHAR, MET_SHORT, MET_USHORT, MET_INT, MET_UINT, MET_LONG_LONG, MET_ULONG_LONG, MET_FLOAT and MET_DOUBLE.",
     ),
     (
+        "E-molecule-count",
+        "The first line of an XYZ file of a molecule is the number of its atoms, a whole number above 0 and nothing else.",
+    ),
+    ("E-molecule-finite", "A coordinate of an atom in an XYZ file is infinite or no number. It must be finite."),
+    ("E-molecule-limit", "An XYZ file has more atoms than the reader's limits allow."),
+    (
+        "E-molecule-number",
+        "A coordinate of an atom in an XYZ file is missing or no decimal number. Each line has an element and three numbers, apart by blanks.",
+    ),
+    ("E-molecule-truncated", "An XYZ file of a molecule ends before it has as many atoms as its first line says."),
+    (
         "E-nrrd-count",
         "A number of axes or samples, or of bytes or lines that are passed over, is no whole number in digits alone, or a field has another number of values than the file has axes.",
     ),
@@ -238,6 +249,20 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("E-off-truncated", "The file ends before the numbers of vertices and faces that its header promises."),
     ("E-off-weight", "A vertex of a 4OFF file has the homogeneous weight 0: it is infinitely far away."),
+    (
+        "E-pdb-finite",
+        "A coordinate of an atom in a Protein Data Bank file is infinite or no number. It must be finite.",
+    ),
+    ("E-pdb-limit", "A Protein Data Bank file has more atoms than the reader's limits allow."),
+    (
+        "E-pdb-number",
+        "A coordinate of an atom was expected in columns 31 to 38, 39 to 46 or 47 to 54 of a Protein Data Bank file, and something else was found. One byte too few or too many in a line moves all that follow.",
+    ),
+    (
+        "E-pdb-row",
+        "The line of an atom in a Protein Data Bank file ends before its coordinates, which stand in columns 31 to 54.",
+    ),
+    ("E-pdb-truncated", "A Protein Data Bank file has no record ATOM or HETATM. It was cut off, or is another file."),
     ("E-pgm-count", "A PGM file has the numbers of columns and rows in its header, in digits alone."),
     ("E-pgm-magic", "A PGM file begins with P2 or P5. Other kinds of Netpbm, of bits or colours, are no heights."),
     ("E-pgm-maxval", "The largest value that a PGM file says is a whole number from 1 to 65535."),
@@ -531,6 +556,18 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     ("W-heights-spacing", "The file has heights, but not how far apart they are. Say it with --set spacing=..."),
     (
+        "W-molecule-frames",
+        "An XYZ file goes on after the atoms that it counts, with further frames of a motion or something else. The first frame was read.",
+    ),
+    (
+        "W-molecule-label",
+        "The name of an atom in an XYZ file is no symbol but begins with one, such as C12; it was taken for that element.",
+    ),
+    (
+        "W-molecule-unknown",
+        "The name of an atom in an XYZ file is no element. The atom was kept as one of an unknown element.",
+    ),
+    (
         "W-obj-color",
         "Vertex colours that are missing for some vertices or not finite were passed over; whole numbers were taken as bytes.",
     ),
@@ -577,6 +614,19 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-off-mixed", "Some colours are in bytes and others in fractions. All became fractions."),
     ("W-off-skipped", "A face has fewer than three corners. It was left out."),
     ("W-off-trailing", "More follows after the last face. It was not read; the number of faces may be too small."),
+    (
+        "W-pdb-alternate",
+        "A Protein Data Bank file gives some atoms at alternate locations. Of each residue the location that comes first was kept.",
+    ),
+    (
+        "W-pdb-element",
+        "Atoms of a Protein Data Bank file have no element in columns 77 and 78, as in old files; it was taken from their names.",
+    ),
+    ("W-pdb-models", "A Protein Data Bank file has several models. The first was read."),
+    (
+        "W-pdb-unknown",
+        "Neither columns 77 and 78 nor the name of an atom in a Protein Data Bank file tell its element. It was kept as unknown.",
+    ),
     ("W-pgm-trailing", "More follows after the last sample of a PGM file. It was not read."),
     ("W-ply-degenerate", "A face names a vertex twice or has no area. It was kept."),
     (

@@ -113,7 +113,7 @@ pub fn slurp_sized(mut reader: impl Read, bytes: u64, limits: &Limits, exec: &Ex
     }
 }
 
-fn too_long(max_bytes: u64) -> Box<Fault> {
+pub(crate) fn too_long(max_bytes: u64) -> Box<Fault> {
     Fault::new("E-read-size", Place::Byte(max_bytes), "more bytes", format!("at most {max_bytes} bytes"))
         .category(Category::OverLimit)
         .advice("raise the limit on input size (--max-memory) if the input is trusted")

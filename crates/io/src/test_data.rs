@@ -56,3 +56,31 @@ pub(crate) fn shuffled_lines(text: &str, count: usize, mut check: impl FnMut(&st
         check(&some.concat());
     }
 }
+
+/// Inputs with one to four bytes of another one changed, put in or left out, or the end cut off: as many as asked for, the same each
+/// time. `check` says whether the input was taken; some must be and some not.
+pub(crate) fn shake(input: &[u8], count: usize, mut check: impl FnMut(&[u8]) -> bool) {
+    let mut state = 11u64;
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below.max(1)
+    };
+    let signs = b"0123456789 .-+eE\n\r\tABHX\0\xff";
+    let mut taken = 0;
+    for _ in 0..count {
+        let mut bytes = input.to_vec();
+        for _ in 0..=random(4) {
+            let at = random(bytes.len());
+            let sign = signs[random(signs.len())];
+            match random(8) {
+                0 => bytes.truncate(at),
+                1 | 2 => bytes.insert(at, sign),
+                3 if !bytes.is_empty() => drop(bytes.remove(at)),
+                _ if !bytes.is_empty() => bytes[at] = sign,
+                _ => {}
+            }
+        }
+        taken += usize::from(check(&bytes));
+    }
+    assert!(taken > count / 20 && taken < count - count / 20, "{taken} of {count}");
+}

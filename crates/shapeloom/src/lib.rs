@@ -53,7 +53,7 @@
 //! | [`mesh`] | triangle and polygon meshes, polylines, height fields, point clouds, attributes, primitives |
 //! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
-//! | [`implicit`] | trees of fields, compiled, with proven bounds; text; rays, places of points, curves in planes |
+//! | [`implicit`] | trees of fields, compiled, with proven bounds; text; blobs and molecules; rays, places of points, curves in planes |
 //! | [`isosurface`] | surfaces where samples on a lattice reach a value |
 //! | [`voxels`] | grids of samples placed in space, and what makes them of meshes, points and fields |
 //! | [`shape`] | the dynamic shape of parts |

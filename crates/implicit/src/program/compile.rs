@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 use std::fmt;
+use std::sync::Arc;
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Category, Diagnostic};
+use shapeloom_core::{Category, Diagnostic, Field};
 
 use super::builder::{Builder, Place};
 use super::{Program, Value};
@@ -287,6 +288,10 @@ impl Lowering {
             }
             O::Substitute(_, a) | O::Named(_, a) => of(self, a),
             O::Foreign(foreign) => self.builder.call(foreign.field(), place),
+            O::Blobs(blobs) => {
+                let field: Arc<dyn Field> = blobs.clone();
+                self.builder.call(&field, place)
+            }
         }
     }
 

@@ -7,6 +7,7 @@ use shapeloom_core::glam::{DVec2, DVec3};
 use shapeloom_core::{Affine, AxisAngle, Field};
 
 use super::{Axis, Foreign, Operation, Tree};
+use crate::blobs::Blobs;
 use crate::operator::{Binary, Unary};
 use crate::shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
 
@@ -108,6 +109,11 @@ impl Tree {
     #[must_use]
     pub fn named(self, name: impl Into<Arc<str>>) -> Self {
         Self::new(Operation::Named(name.into(), self))
+    }
+
+    /// A field of blobs.
+    pub fn blobs(blobs: impl Into<Arc<Blobs>>) -> Self {
+        Self::new(Operation::Blobs(blobs.into()))
     }
 
     /// A field from elsewhere; see [`Foreign::new`].

@@ -41,6 +41,7 @@ fn same_but_for_children(a: &Operation, b: &Operation) -> bool {
         (Domain(a, _), Domain(b, _)) => a == b,
         (Named(a, _), Named(b, _)) => a == b,
         (Foreign(a), Foreign(b)) => a.source() == b.source(),
+        (Blobs(a), Blobs(b)) => a == b,
         (Complement(_) | Displace(..) | Substitute(..), _) => discriminant(a) == discriminant(b),
         _ => false,
     }

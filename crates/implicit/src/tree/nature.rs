@@ -124,6 +124,7 @@ impl Nature {
                 Self { exact: false, lipschitz }
             }
             O::Foreign(foreign) => foreign.nature(),
+            O::Blobs(blobs) => Self { exact: false, lipschitz: shapeloom_core::Field::lipschitz(&**blobs) },
         }
     }
 

@@ -7,6 +7,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Affine, Field};
 
 use super::{Nature, Tree};
+use crate::blobs::Blobs;
 use crate::operator::{Binary, Unary};
 use crate::shapes::{Blend, Domain, Primitive, SetOperation};
 
@@ -49,6 +50,8 @@ pub enum Operation {
     Named(Arc<str>, Tree),
     /// A field from elsewhere.
     Foreign(Foreign),
+    /// A field of blobs.
+    Blobs(Arc<Blobs>),
 }
 
 /// One of the three coordinates.
@@ -138,13 +141,16 @@ impl Operation {
             Self::Substitute(..) => "substitute",
             Self::Named(..) => "named",
             Self::Foreign(_) => "foreign",
+            Self::Blobs(blobs) => blobs.form().name(),
         }
     }
 
     /// The trees that it is made of, in order.
     pub fn children(&self) -> impl DoubleEndedIterator<Item = &Tree> {
         let (few, many): ([Option<&Tree>; 4], &[Tree]) = match self {
-            Self::Constant(_) | Self::Coordinate(_) | Self::Primitive(_) | Self::Foreign(_) => ([None; 4], &[]),
+            Self::Constant(_) | Self::Coordinate(_) | Self::Primitive(_) | Self::Foreign(_) | Self::Blobs(_) => {
+                ([None; 4], &[])
+            }
             Self::Unary(_, a)
             | Self::Power(a, _)
             | Self::Complement(a)
@@ -165,7 +171,9 @@ impl Operation {
     /// The trees that it is made of, taken out.
     pub(super) fn into_children(self) -> Vec<Tree> {
         match self {
-            Self::Constant(_) | Self::Coordinate(_) | Self::Primitive(_) | Self::Foreign(_) => Vec::new(),
+            Self::Constant(_) | Self::Coordinate(_) | Self::Primitive(_) | Self::Foreign(_) | Self::Blobs(_) => {
+                Vec::new()
+            }
             Self::Unary(_, a)
             | Self::Power(a, _)
             | Self::Complement(a)
