@@ -2,16 +2,19 @@
 //!
 //! A [`Tree`] says what a shape is: formulas, solids, sets, blends, bent space, fields from elsewhere. [`Tree::compile`] makes a
 //! [`Program`] of it, which evaluators run: [`PointEvaluator`] in double precision with derivatives, [`BatchEvaluator`] for many points in
-//! single precision, [`IntervalEvaluator`] for proven bounds over boxes. A program is a [`Field`](shapeloom_core::Field) too.
+//! single precision, [`IntervalEvaluator`] for proven bounds over boxes. A program is a [`Field`](shapeloom_core::Field) too, and
+//! [`SampledSurface`] makes triangles of any field.
 
 #[cfg(test)]
 mod laws;
+mod meshing;
 mod operator;
 mod power;
 mod program;
 mod shapes;
 mod tree;
 
+pub use meshing::{FoundBounds, MeshingError, PrunedField, Region, SampledSurface, SurfaceMethod, find_bounds};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};
 pub use shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};

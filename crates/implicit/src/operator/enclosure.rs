@@ -287,7 +287,8 @@ mod tests {
 
     #[test]
     fn ends_move_to_their_neighbours_or_beyond() {
-        let mut ends = vec![0.0, f64::MIN_POSITIVE, f64::MAX, f64::from_bits(1), 1.0, 1.0_f64.next_down(), 2.0_f64.powi(-970)];
+        let mut ends =
+            vec![0.0, f64::MIN_POSITIVE, f64::MAX, f64::from_bits(1), 1.0, 1.0_f64.next_down(), 2.0_f64.powi(-970)];
         let mut bits = 1_u64;
         for _ in 0..20_000 {
             bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -88,7 +88,8 @@ impl Linear {
             }
             let side = Enclosure::new(lo, hi);
             // Nothing is rounded where a coordinate is taken as it is.
-            let part = if slope == 1.0 { side } else { Binary::Multiply.of_enclosures(Enclosure::exactly(slope), side).0 };
+            let part =
+                if slope == 1.0 { side } else { Binary::Multiply.of_enclosures(Enclosure::exactly(slope), side).0 };
             sum = if empty { part } else { Binary::Add.of_enclosures(sum, part).0 };
             empty = false;
         }
