@@ -60,6 +60,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-edit-valence", "The vertex has too few edges to be removed: no face would be left."),
     ("E-frame-parallel", "Two directions that should span a frame are parallel or zero."),
     ("E-homogeneous-weight", "A combination of points is neither a point (weights sum to 1) nor a vector (0)."),
+    (
+        "E-implicit-region",
+        "The region in which an implicit shape is sampled is no box: a corner is not finite, or a coordinate of the first corner is not below that of the second. Give six finite numbers, the least corner first, or auto.",
+    ),
+    (
+        "E-implicit-unbounded",
+        "No box was found outside of which the shape is proven to be empty: it has no end, such as a half-space, or nothing is known of its values far away. Say where to look by the option region, six numbers from the least to the greatest corner; the shape is cut off there.",
+    ),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
     (
         "E-judge-finite",
@@ -327,6 +335,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-height-tolerance",
         "Some cells of a height field are twisted: their four heights lie so far from a plane that triangles come near the surface between them only when the cell is cut into many. They were cut as finely as max_cell_steps allows and are still farther than the tolerance; the report says how far. A tolerance of 0 can be reached by cells without twist alone. Allow more steps with --set max_cell_steps=N, or a larger tolerance.",
+    ),
+    (
+        "W-implicit-empty",
+        "The implicit shape is positive everywhere: it holds no point, so the mesh is empty. Look whether an intersection or difference leaves nothing, and at the sign of the field, which is negative inside.",
+    ),
+    (
+        "W-implicit-searched",
+        "Bounds over infinite boxes did not prove where the implicit shape ends, so it was searched for up to a stated distance. What lies beyond is not drawn; give the option region to look elsewhere.",
     ),
     (
         "W-info-open",

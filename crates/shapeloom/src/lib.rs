@@ -54,6 +54,7 @@
 //! | [`judge`] | what decides whether a shape is sound: topology, self-intersection, distances |
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
 //! | [`isosurface`] | surfaces where samples on a lattice reach a value |
+//! | [`implicit`] | fields as expression trees, compiled; their surfaces as triangles |
 //! | [`voxels`] | grids of samples placed in space, and what makes them of meshes, points and fields |
 //! | [`shape`] | the dynamic shape of parts |
 //! | [`io`] | file formats |
@@ -62,6 +63,7 @@
 
 pub use shapeloom_convert as convert;
 pub use shapeloom_core as core;
+pub use shapeloom_implicit as implicit;
 pub use shapeloom_io as io;
 pub use shapeloom_isosurface as isosurface;
 pub use shapeloom_judge as judge;

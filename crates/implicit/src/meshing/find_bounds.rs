@@ -127,7 +127,7 @@ fn half_space<F: Field + ?Sized>(field: &F, axis: usize, upward: bool) -> Option
         field.range(&region).lo > 0.0
     };
     // Squares and higher powers of very large coordinates overflow, so begin where shapes are.
-    let mut known = [60, 20, 200, 900].into_iter().find(|&exponent| is_positive(exponent))?;
+    let mut known = [60, 20, 200, 505, 900].into_iter().find(|&exponent| is_positive(exponent))?;
     let mut below = *EXPONENTS.start();
     while known - below > 1 {
         let middle = below + (known - below) / 2;

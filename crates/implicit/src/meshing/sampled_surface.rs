@@ -144,14 +144,13 @@ impl SampledSurface {
     /// The lattice over a region: just over it where it is given, with a cell around it where it is found.
     fn lattice(&self, region: &Aabb, given: bool) -> Result<Lattice, ConvertError> {
         let cells = (region.size() / self.cell_size).ceil().max(DVec3::ONE);
-        // Numbers that no lattice has are refused there, by its own words.
         let dimensions = cells.to_array().map(|count| (count as u32).saturating_add(1));
+        if dimensions.iter().any(|&count| count > u32::MAX - 2) {
+            return Err(LatticeError::TooMany { dimensions }.into());
+        }
         let spacing = region.size() / cells;
         if given {
             return Ok(Lattice::along_axes(dimensions, region.min, spacing)?);
-        }
-        if dimensions.iter().any(|&count| count > u32::MAX - 2) {
-            return Err(LatticeError::TooMany { dimensions }.into());
         }
         // Where the box has no length along an axis, cells there are as large as they may be.
         let spacing = DVec3::select(spacing.cmpgt(DVec3::ZERO), spacing, DVec3::splat(self.cell_size));
