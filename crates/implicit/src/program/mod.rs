@@ -41,6 +41,8 @@ pub struct Program(Arc<Parts>);
 
 struct Parts {
     steps: Vec<Step>,
+    /// Of each step, for bounds.
+    codes: Vec<interval::Code>,
     calls: Vec<Call>,
     result: Value,
     /// Made when values are first asked for in batches: most simplified programs are asked for bounds alone.
@@ -58,7 +60,8 @@ impl Parts {
 impl Program {
     fn new(steps: Vec<Step>, calls: Vec<Call>, result: Value, nature: Nature) -> Self {
         let choices = steps.iter().filter(|step| interval::chooses(step)).count();
-        Self(Arc::new(Parts { steps, calls, result, tape: OnceLock::new(), choices, nature }))
+        let codes = steps.iter().map(interval::Code::of).collect();
+        Self(Arc::new(Parts { steps, codes, calls, result, tape: OnceLock::new(), choices, nature }))
     }
 
     /// How many steps there are.
