@@ -90,7 +90,7 @@ pub fn find_bounds<F: Field + ?Sized>(field: &F, exec: &Exec) -> Result<FoundBou
                 next.push(part);
                 continue;
             }
-            for region in octants(&part.region) {
+            for region in halves(&part.region, hull.size()) {
                 ask(field, part.field.clone(), region, &mut next);
                 asked += 1;
             }
@@ -157,8 +157,23 @@ fn hull_of(open: &[Open]) -> Aabb {
     open.iter().fold(Aabb::EMPTY, |hull, part| hull.union(part.region))
 }
 
-/// The eight parts of a box.
-pub(super) fn octants(region: &Aabb) -> [Aabb; 8] {
-    let middle = region.center();
-    region.corners().map(|corner| Aabb::from_corners(corner, middle))
+/// The halves of a box along the axes on which it is longest beside the hull, so that a shape that is small and far away is found
+/// along one axis without ado along the others.
+fn halves(region: &Aabb, hull: DVec3) -> impl Iterator<Item = Aabb> {
+    let shares = region.size() / hull;
+    let most = shares.max_element();
+    let splits = [0, 1, 2].map(|axis| shares[axis] >= 0.75 * most);
+    let (region, middle) = (*region, region.center());
+    (0..8).filter_map(move |octant| {
+        let mut part = region;
+        for axis in 0..3 {
+            match (splits[axis], octant >> axis & 1) {
+                (true, 0) => part.max[axis] = middle[axis],
+                (true, _) => part.min[axis] = middle[axis],
+                (false, 0) => {}
+                (false, _) => return None,
+            }
+        }
+        Some(part)
+    })
 }

@@ -50,7 +50,8 @@ struct Done {
     negative: Vec<usize>,
     sampled: Vec<usize>,
     samples: Vec<[f32; BLOCK]>,
-    memory: Option<Reservation>,
+    /// Held until the samples are in one place.
+    _memory: Option<Reservation>,
 }
 
 impl PrunedField {
@@ -149,7 +150,7 @@ impl<F: Field + ?Sized> Sampler<'_, F> {
     fn run(&self, task: &Part, exec: &Exec) -> Result<Done, ConvertError> {
         let blocks = (0..3).map(|axis| task.end[axis] - task.first[axis]).product::<usize>();
         let mut done =
-            Done { memory: Some(exec.reserve_elements(blocks as u64, size_of::<[f32; BLOCK]>())?), ..Done::default() };
+            Done { _memory: Some(exec.reserve_elements(blocks as u64, size_of::<[f32; BLOCK]>())?), ..Done::default() };
         let mut open: Vec<Part> = match task.is_block() {
             true => vec![Part { first: task.first, end: task.end, field: task.field.clone() }],
             false => task.halves().collect(),
