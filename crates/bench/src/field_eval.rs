@@ -41,9 +41,13 @@ fn models(setting: &Setting) -> Result<Vec<Model>, String> {
     paths.iter().map(load).collect()
 }
 
+pub(crate) fn program(name: &str, text: &str) -> Result<Program, String> {
+    let tree = tree(text).map_err(|line| format!("{name}: line {line}: found something else than an operation"))?;
+    tree.compile().map_err(|error| format!("{name}: {error}"))
+}
+
 fn model(name: &str, text: &str) -> Result<Model, String> {
-    let ours = tree(text).map_err(|line| format!("{name}: line {line}: found something else than an operation"))?;
-    let ours = ours.compile().map_err(|error| format!("{name}: {error}"))?;
+    let ours = program(name, text)?;
     let (context, root) = Context::from_text(text.as_bytes()).map_err(|error| format!("{name}: {error}"))?;
     let theirs = VmShape::new(&context, root).map_err(|error| format!("{name}: {error}"))?;
     let stem = Path::new(name).file_stem().unwrap_or_default();
@@ -98,7 +102,8 @@ pub(crate) fn points(setting: &Setting) -> Result<Vec<Outcome>, String> {
     for model in models(setting)? {
         let at = |i: usize| ((i as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * model.reach;
         let slabs = if model.ours.len() > 1000 { 1 } else { 8 };
-        let indices: Vec<[usize; 3]> = (0..SIDE * SIDE * slabs).map(|n| [n % SIDE, n / SIDE % SIDE, n / SIDE / SIDE * 16]).collect();
+        let indices: Vec<[usize; 3]> =
+            (0..SIDE * SIDE * slabs).map(|n| [n % SIDE, n / SIDE % SIDE, n / SIDE / SIDE * 16]).collect();
         let along = |axis: usize| indices.iter().map(|index| at(index[axis]) as f32).collect::<Vec<f32>>();
         let (x, y, z) = (along(0), along(1), along(2));
         // The same points, but no coordinate the same along a batch.
@@ -129,7 +134,8 @@ pub(crate) fn points(setting: &Setting) -> Result<Vec<Outcome>, String> {
                 expected = values;
             }
             let Some(theirs) = theirs else { continue };
-            let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs().max(b.abs())) || a.is_nan() == b.is_nan();
+            let close =
+                |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs().max(b.abs())) || a.is_nan() == b.is_nan();
             let differ = found.iter().zip(&expected).filter(|&(&a, &b)| !close(a, b)).count();
             let mut figures = figures(&model, "points", x.len(), ours, theirs);
             figures.insert("differ".into(), json!(differ));

@@ -6,10 +6,12 @@
 mod blobs;
 mod closest;
 mod delaunay2d;
+mod field_eval;
 mod files;
 mod half_edges;
 mod hausdorff;
 mod heightfield;
+mod implicit_surface;
 mod isosurface;
 mod measure;
 mod mesh_to_sdf;
@@ -101,6 +103,12 @@ pub enum Task {
     SurfaceNets,
     /// Signed distances of blob_1m.ply (else of a torus) on 256³ samples.
     MeshToSdf,
+    /// Values of the implicits in .vm files (else of a formula) at many points, beside fidget's interpreter.
+    FieldEval,
+    /// Bounds of the same over boxes, and simplification there, beside fidget's.
+    IntervalEval,
+    /// The same to triangles at 256³ samples: with samples left out where bounds settle the sign, and without.
+    ImplicitSurface,
     /// An octree over blob_1m.ply beside the hierarchy: build, the rays of rays_random.f32, boxes; and a grid to an
     /// octree and back.
     Octree,
@@ -172,6 +180,7 @@ impl Task {
                 _ => vec!["p.adjacency_1m.one_ring_vertex_normals".into()],
             },
             Self::Tessellate | Self::Write | Self::Topology | Self::Hausdorff | Self::Heightfield => Vec::new(),
+            Self::FieldEval | Self::IntervalEval | Self::ImplicitSurface => Vec::new(),
             Self::Octree | Self::Redistance | Self::Blobs => Vec::new(),
         }
     }
@@ -224,6 +233,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>, out: &mut dyn Write, e
         Task::Delaunay2d => delaunay2d::run(&setting).map(|outcome| vec![outcome]),
         Task::SurfaceNets => surface_nets::run(&setting),
         Task::MeshToSdf => mesh_to_sdf::run(&setting),
+        Task::FieldEval => field_eval::points(&setting),
+        Task::IntervalEval => field_eval::boxes(&setting),
+        Task::ImplicitSurface => implicit_surface::run(&setting),
         Task::Octree => octree::run(&setting),
         Task::Redistance => redistance::run(&setting),
         Task::Blobs => blobs::run(&setting),

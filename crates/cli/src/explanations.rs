@@ -15,9 +15,6 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-bezier-degree", "A Bézier degree is above 255, beyond which an evaluation takes over a millisecond."),
     ("E-bezier-empty", "A curve has no control points."),
     ("E-bezier-finite", "A control point is infinite or not a number."),
-    (
-        "E-boolean-volume",
-        "The file is not one volume. Operations on two volumes need a grid of samples each; a mesh becomes one by mesh-to-distance or voxelize-mesh.",
     ("E-blobs-center", "A centre of a blob is infinite or no number. Centres must be finite."),
     ("E-blobs-count", "There are more blobs than a field may have, 2^31."),
     (
@@ -103,8 +100,8 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "A number of an implicit shape is outside its range: a radius of 0 or below, an alpha of an R-function outside (-1, 1], a map that flattens space. The message names the operation, the parameter and the part. Correct the number.",
     ),
     (
-        "E-implicit-steps",
-        "The shape, with its shared parts written out at each of their places, takes more than two million steps. Parts that are shared inside bent space multiply: use fewer levels, or a repeat instead of copies of copies.",
+        "E-implicit-unbounded",
+        "No box was found outside of which the shape is proven to be empty: it has no end, such as a half-space, or nothing is known of its values far away. Say where to look by the option region, six numbers from the least to the greatest corner; the shape is cut off there.",
     ),
     ("E-input-open", "The input file does not exist, is a folder, or may not be read."),
     (
@@ -458,6 +455,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "W-height-tolerance",
         "Some cells of a height field are twisted: their four heights lie so far from a plane that triangles come near the surface between them only when the cell is cut into many. They were cut as finely as max_cell_steps allows and are still farther than the tolerance; the report says how far. A tolerance of 0 can be reached by cells without twist alone. Allow more steps with --set max_cell_steps=N, or a larger tolerance.",
+    ),
+    (
+        "W-implicit-empty",
+        "The implicit shape is positive everywhere: it holds no point, so the mesh is empty. Look whether an intersection or difference leaves nothing, and at the sign of the field, which is negative inside.",
+    ),
+    (
+        "W-implicit-searched",
+        "Bounds over infinite boxes did not prove where the implicit shape ends, so it was searched for up to a stated distance. What lies beyond is not drawn; give the option region to look elsewhere.",
     ),
     (
         "W-info-open",

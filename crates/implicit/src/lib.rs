@@ -2,13 +2,15 @@
 //!
 //! A [`Tree`] says what a shape is: formulas, solids, sets, blends, bent space, fields from elsewhere. [`Tree::compile`] makes a
 //! [`Program`] of it, which evaluators run: [`PointEvaluator`] in double precision with derivatives, [`BatchEvaluator`] for many points in
-//! single precision, [`IntervalEvaluator`] for proven bounds over boxes. A program is a [`Field`](shapeloom_core::Field) too.
+//! single precision, [`IntervalEvaluator`] for proven bounds over boxes. A program is a [`Field`](shapeloom_core::Field) too, and
+//! [`SampledSurface`] makes triangles of any field.
 
+mod blobs;
 mod curve_distance;
 mod implicit;
-mod blobs;
 #[cfg(test)]
 mod laws;
+mod meshing;
 mod molecule;
 mod operator;
 mod power;
@@ -18,9 +20,10 @@ mod shapes;
 mod text;
 mod tree;
 
+pub use blobs::{Blob, BlobForm, Blobs, BlobsError};
 pub use curve_distance::{CurveDistance, CurveError};
 pub use implicit::{BoundsError, Implicit};
-pub use blobs::{Blob, BlobForm, Blobs, BlobsError};
+pub use meshing::{FoundBounds, MeshingError, PrunedField, Region, SampledSurface, SurfaceMethod, find_bounds};
 pub use molecule::{Atom, AtomBlobs, Element, Molecule};
 pub use operator::{Binary, Choice, Dual, Enclosure, Unary};
 pub use program::{BatchEvaluator, CompileError, IntervalEvaluator, ParameterError, PointEvaluator, Program, Trace};

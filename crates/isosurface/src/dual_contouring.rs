@@ -64,6 +64,19 @@ impl DualContouring {
         self.contour(&FieldSlabs::new(field, lattice), Some(field), exec)
     }
 
+    /// Contours samples of a field, with crossings and gradients of the field itself.
+    ///
+    /// # Errors
+    /// As [`Convert::convert_with`].
+    pub fn sampled_field<S: Slabs + ?Sized, F: Field + ?Sized>(
+        &self,
+        samples: &S,
+        field: &F,
+        exec: &Exec,
+    ) -> Result<Converted<TriMesh>, ConvertError> {
+        self.contour(samples, Some(field), exec)
+    }
+
     fn contour<S: Slabs + ?Sized, F: Field + ?Sized>(
         &self,
         source: &S,

@@ -55,6 +55,7 @@
 //! | [`parametric`] | Bézier curves and patches, and their tessellation with a proven error |
 //! | [`implicit`] | trees of fields, compiled, with proven bounds; text; blobs and molecules; rays, places of points, curves in planes |
 //! | [`isosurface`] | surfaces where samples on a lattice reach a value |
+//! | [`implicit`] | fields as expression trees, compiled; their surfaces as triangles |
 //! | [`voxels`] | grids of samples placed in space, and what makes them of meshes, points and fields |
 //! | [`shape`] | the dynamic shape of parts |
 //! | [`io`] | file formats |

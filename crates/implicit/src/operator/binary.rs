@@ -177,7 +177,8 @@ impl Binary {
     }
 
     /// Bounds of the result over two intervals, and for the operators that choose an operand, which.
-    #[inline]
+    // Callers mostly know the operator.
+    #[inline(always)]
     pub fn of_enclosures(self, a: Enclosure, b: Enclosure) -> (Enclosure, Choice) {
         let result = match self {
             Self::Add => a.plus(b),
@@ -231,13 +232,9 @@ pub enum Choice {
 fn minimum(a: Enclosure, b: Enclosure) -> (Enclosure, Choice) {
     let (lo, hi) = (least(a.lo, b.lo), least(a.hi, b.hi));
     if !a.undefined && !b.undefined {
-        let choice = if a.hi < b.lo {
-            Choice::Left
-        } else if b.hi < a.lo {
-            Choice::Right
-        } else {
-            Choice::Both
-        };
+        // Without a branch, which could not be foretold. Both at once cannot be.
+        let choice = [Choice::Both, Choice::Left, Choice::Right, Choice::Both]
+            [usize::from(a.hi < b.lo) + 2 * usize::from(b.hi < a.lo)];
         return (Enclosure { lo, hi, undefined: false }, choice);
     }
     let mut result = Enclosure { lo, hi, undefined: a.undefined && b.undefined };

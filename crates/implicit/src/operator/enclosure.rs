@@ -124,13 +124,8 @@ impl Enclosure {
 
     #[inline(always)]
     pub(super) fn absolute(self) -> Self {
-        if self.lo >= 0.0 {
-            self
-        } else if self.hi <= 0.0 {
-            self.negate()
-        } else {
-            Self { lo: 0.0, hi: self.hi.max(-self.lo), undefined: self.undefined }
-        }
+        // Without asking where the interval lies: no branch could be foretold.
+        Self { lo: most(most(self.lo, -self.hi), 0.0), hi: most(self.hi, -self.lo), undefined: self.undefined }
     }
 
     #[inline(always)]

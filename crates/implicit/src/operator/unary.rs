@@ -149,6 +149,8 @@ impl Unary {
     }
 
     /// Bounds of the result over an interval.
+    // Callers mostly know the operator.
+    #[inline(always)]
     pub fn of_enclosure(self, a: Enclosure) -> Enclosure {
         match self {
             Self::Negate => a.negate(),

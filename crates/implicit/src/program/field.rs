@@ -46,7 +46,7 @@ impl Field for Program {
         if gradient.is_finite() { gradient } else { DVec3::ZERO }
     }
 
-    /// By interval arithmetic with outward rounding.
+    /// By interval arithmetic with outward rounding. The box may be infinite; the points in it are finite.
     fn range(&self, region: &Aabb) -> Interval {
         if !is_sound(region) {
             return Interval::ALL;
@@ -84,8 +84,9 @@ impl Field for Program {
     }
 }
 
+/// Ends may be infinite: all finite numbers up to there.
 fn is_sound(region: &Aabb) -> bool {
-    !region.is_empty() && region.min.is_finite() && region.max.is_finite()
+    !region.is_empty() && !region.min.is_nan() && !region.max.is_nan()
 }
 
 /// What is not a number counts as outside, so bounds must not say that all is inside.
@@ -101,6 +102,9 @@ impl Program {
         let mut changed = false;
         for call in &mut calls {
             let Some(map) = &call.map else { continue };
+            if !region.min.is_finite() || !region.max.is_finite() {
+                continue;
+            }
             let corners = region.corners().map(|corner| DVec3::from_array(map.map(|linear| linear.at(corner))));
             let there = Aabb::from_points(corners);
             // Rounding may have moved a corner inward.

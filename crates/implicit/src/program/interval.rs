@@ -4,8 +4,8 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, Interval};
 
 use super::Program;
-use super::step::{Linear, Step};
-use crate::operator::{Binary, Choice, Enclosure};
+use super::step::{Call, Linear, Step};
+use crate::operator::{Binary, Choice, Enclosure, Unary};
 
 /// Evaluates programs over boxes. One for each thread; it keeps its memory from call to call and serves any program.
 #[derive(Clone, Debug, Default)]
@@ -43,37 +43,109 @@ impl IntervalEvaluator {
         self.bounds.clear();
         self.bounds.reserve(parts.steps.len());
         self.choices.clear();
-        for step in &parts.steps {
-            let at = |value: super::Value| self.bounds[value.index()];
-            let bounds = match *step {
-                Step::Constant(value) => Enclosure::exactly(value),
-                Step::Linear(linear) => linear.over(region),
-                Step::Unary(operator, a) => operator.of_enclosure(at(a)),
-                Step::Binary(operator, a, b) => {
-                    let (bounds, choice) = operator.of_enclosures(at(a), at(b));
-                    if chooses(step) {
-                        self.choices.push(choice);
-                    }
+        for (code, step) in parts.codes.iter().zip(&parts.steps) {
+            let (a, b) = (self.bounds.get(code.a as usize), self.bounds.get(code.b as usize));
+            let bounds = match (code.kind, a, b) {
+                (Kind::Constant, ..) => match *step {
+                    Step::Constant(value) => Enclosure::exactly(value),
+                    _ => Enclosure::UNKNOWN,
+                },
+                (Kind::Square, Some(a), _) => Unary::Square.of_enclosure(*a),
+                (Kind::SquareRoot, Some(a), _) => Unary::SquareRoot.of_enclosure(*a),
+                (Kind::Negate, Some(a), _) => Unary::Negate.of_enclosure(*a),
+                (Kind::Absolute, Some(a), _) => Unary::Absolute.of_enclosure(*a),
+                (Kind::Add, Some(a), Some(b)) => Binary::Add.of_enclosures(*a, *b).0,
+                (Kind::Subtract, Some(a), Some(b)) => Binary::Subtract.of_enclosures(*a, *b).0,
+                (Kind::Multiply, Some(a), Some(b)) => Binary::Multiply.of_enclosures(*a, *b).0,
+                (Kind::Minimum, Some(a), Some(b)) => {
+                    let (bounds, choice) = Binary::Minimum.of_enclosures(*a, *b);
+                    self.choices.push(choice);
                     bounds
                 }
-                Step::Power(a, exponent) => at(a).power(exponent),
-                Step::Call(call, place) => {
-                    let place = place.map(at);
-                    let region = Aabb {
-                        min: DVec3::from_array(place.map(|side| side.lo)),
-                        max: DVec3::from_array(place.map(|side| side.hi)),
-                    };
-                    if place.iter().any(|side| side.undefined) || !region.min.is_finite() || !region.max.is_finite() {
-                        Enclosure::UNKNOWN
-                    } else {
-                        let Interval { lo, hi } = parts.calls[call as usize].field.range(&region);
-                        Enclosure::new(lo, hi)
-                    }
+                (Kind::Maximum, Some(a), Some(b)) => {
+                    let (bounds, choice) = Binary::Maximum.of_enclosures(*a, *b);
+                    self.choices.push(choice);
+                    bounds
                 }
+                _ => self.other(step, &parts.calls, region),
             };
             self.bounds.push(bounds);
         }
         (self.bounds[parts.result.index()], Trace(&self.choices))
+    }
+
+    /// A step that is not among the common ones.
+    #[inline(never)]
+    fn other(&mut self, step: &Step, calls: &[Call], region: &Aabb) -> Enclosure {
+        let at = |value: super::Value| self.bounds[value.index()];
+        match *step {
+            Step::Constant(value) => Enclosure::exactly(value),
+            Step::Linear(linear) => linear.over(region),
+            Step::Unary(operator, a) => operator.of_enclosure(at(a)),
+            Step::Binary(operator, a, b) => {
+                let (bounds, choice) = operator.of_enclosures(at(a), at(b));
+                if chooses(step) {
+                    self.choices.push(choice);
+                }
+                bounds
+            }
+            Step::Power(a, exponent) => at(a).power(exponent),
+            Step::Call(call, place) => {
+                let place = place.map(at);
+                let region = Aabb {
+                    min: DVec3::from_array(place.map(|side| side.lo)),
+                    max: DVec3::from_array(place.map(|side| side.hi)),
+                };
+                if place.iter().any(|side| side.undefined) || !region.min.is_finite() || !region.max.is_finite() {
+                    Enclosure::UNKNOWN
+                } else {
+                    let Interval { lo, hi } = calls[call as usize].field.range(&region);
+                    Enclosure::new(lo, hi)
+                }
+            }
+        }
+    }
+}
+
+/// What a step does, in short: the common ones are told apart by one jump, which costs less than the arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Code {
+    kind: Kind,
+    a: u32,
+    b: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Constant,
+    Square,
+    SquareRoot,
+    Negate,
+    Absolute,
+    Add,
+    Subtract,
+    Multiply,
+    Minimum,
+    Maximum,
+    Other,
+}
+
+impl Code {
+    pub(super) fn of(step: &Step) -> Self {
+        let (kind, a, b) = match *step {
+            Step::Unary(Unary::Square, a) => (Kind::Square, a, a),
+            Step::Unary(Unary::SquareRoot, a) => (Kind::SquareRoot, a, a),
+            Step::Unary(Unary::Negate, a) => (Kind::Negate, a, a),
+            Step::Unary(Unary::Absolute, a) => (Kind::Absolute, a, a),
+            Step::Binary(Binary::Add, a, b) => (Kind::Add, a, b),
+            Step::Binary(Binary::Subtract, a, b) => (Kind::Subtract, a, b),
+            Step::Binary(Binary::Multiply, a, b) => (Kind::Multiply, a, b),
+            Step::Binary(Binary::Minimum, a, b) => (Kind::Minimum, a, b),
+            Step::Binary(Binary::Maximum, a, b) => (Kind::Maximum, a, b),
+            Step::Constant(_) => return Self { kind: Kind::Constant, a: 0, b: 0 },
+            _ => return Self { kind: Kind::Other, a: 0, b: 0 },
+        };
+        Self { kind, a: a.0, b: b.0 }
     }
 }
 

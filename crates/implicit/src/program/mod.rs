@@ -42,6 +42,8 @@ pub struct Program(Arc<Parts>);
 
 struct Parts {
     steps: Vec<Step>,
+    /// Of each step, for bounds.
+    codes: Vec<interval::Code>,
     calls: Vec<Call>,
     result: Value,
     /// Made when values are first asked for in batches: most simplified programs are asked for bounds alone.
@@ -59,7 +61,8 @@ impl Parts {
 impl Program {
     fn new(steps: Vec<Step>, calls: Vec<Call>, result: Value, nature: Nature) -> Self {
         let choices = steps.iter().filter(|step| interval::chooses(step)).count();
-        Self(Arc::new(Parts { steps, calls, result, tape: OnceLock::new(), choices, nature }))
+        let codes = steps.iter().map(interval::Code::of).collect();
+        Self(Arc::new(Parts { steps, codes, calls, result, tape: OnceLock::new(), choices, nature }))
     }
 
     /// The steps, and which of them is the result.

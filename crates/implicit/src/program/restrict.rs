@@ -76,6 +76,7 @@ impl Program {
         let parts = &*self.0;
         Self(Arc::new(super::Parts {
             steps: parts.steps.clone(),
+            codes: parts.codes.clone(),
             calls,
             result: parts.result,
             tape: parts.tape.clone(),
