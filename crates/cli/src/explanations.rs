@@ -38,6 +38,10 @@ const EXPLANATIONS: &[(&str, &str)] = &[
         "E-blobs-unreachable",
         "The threshold of blobs is at least the sum of all their peaks, so that nothing is inside anywhere.",
     ),
+    (
+        "E-boolean-volume",
+        "The file is not one volume. Operations on two volumes need a grid of samples each; a mesh becomes one by mesh-to-distance or voxelize-mesh.",
+    ),
     ("E-bvh-count", "There are more triangles than 32-bit ids can tell apart."),
     ("E-bvh-finite", "A triangle's corner is infinite or not a number."),
     ("E-bvh-index", "A triangle names a vertex that does not exist."),
@@ -98,6 +102,14 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     (
         "E-implicit-parameter",
         "A number of an implicit shape is outside its range: a radius of 0 or below, an alpha of an R-function outside (-1, 1], a map that flattens space. The message names the operation, the parameter and the part. Correct the number.",
+    ),
+    (
+        "E-implicit-region",
+        "The region in which an implicit shape is sampled is no box: a corner is not finite, or a coordinate of the first corner is not below that of the second. Give six finite numbers, the least corner first, or auto.",
+    ),
+    (
+        "E-implicit-steps",
+        "The shape, with its shared parts written out at each of their places, takes more than two million steps. Parts that are shared inside bent space multiply: use fewer levels, or a repeat instead of copies of copies.",
     ),
     (
         "E-implicit-unbounded",

@@ -61,6 +61,8 @@ pub(super) struct Bound {
     slots: Vec<Option<Value>>,
     /// What a function of any number of parts was given.
     pub(super) parts: Vec<Tree>,
+    /// The numbers behind the parameters of a function that takes groups of them, in whole groups.
+    pub(super) rest: Vec<f64>,
 }
 
 impl Bound {
@@ -118,6 +120,8 @@ pub(super) struct Signature {
     pub(super) parameters: &'static [Parameter],
     /// Any number of fields instead of parameters.
     pub(super) many: bool,
+    /// What each group of numbers behind the parameters is, where there may be any number of groups.
+    pub(super) group: &'static [&'static str],
 }
 
 impl Signature {
@@ -129,7 +133,7 @@ impl Signature {
 
     /// The arguments in the order of the parameters; the call stands at the byte `at`.
     pub(super) fn bind(&self, at: usize, arguments: Vec<Argument<'_>>) -> Result<Bound, Fault> {
-        let mut bound = Bound { function: self.name, slots: Vec::new(), parts: Vec::new() };
+        let mut bound = Bound { function: self.name, slots: Vec::new(), parts: Vec::new(), rest: Vec::new() };
         if self.many {
             for argument in arguments {
                 if let Some(name) = argument.name {
@@ -147,6 +151,16 @@ impl Signature {
         for (place, argument) in arguments.into_iter().enumerate() {
             let index = match argument.name {
                 None if place < self.parameters.len() => place,
+                None if !self.group.is_empty() => match argument.value.closed() {
+                    Value::Number(number) => {
+                        bound.rest.push(number);
+                        continue;
+                    }
+                    value => {
+                        let name = self.group.get(bound.rest.len() % self.group.len()).copied().unwrap_or_default();
+                        return Err(self.fault(argument.at, value.described(), format!("a number as {name}")));
+                    }
+                },
                 None => {
                     return Err(self.fault(argument.at, format!("{count} arguments"), self.described()));
                 }
@@ -168,6 +182,10 @@ impl Signature {
                 (None, Missing::Number(number)) => *slot = Some(Value::Number(number)),
                 _ => {}
             }
+        }
+        if bound.rest.len().checked_rem(self.group.len()).unwrap_or(0) != 0 {
+            let found = format!("{} numbers behind {} parameters", bound.rest.len(), self.parameters.len());
+            return Err(self.fault(at, found, self.described()));
         }
         Ok(bound)
     }
@@ -213,6 +231,7 @@ impl Signature {
                 Missing::Absent => format!("{} = none", parameter.name),
             })
             .collect();
-        format!("{}({})", self.name, parameters.join(", "))
+        let group = if self.group.is_empty() { String::new() } else { format!(", {}, ...", self.group.join(", ")) };
+        format!("{}({}{group})", self.name, parameters.join(", "))
     }
 }

@@ -1,11 +1,14 @@
 //! The functions of the language.
 
-use shapeloom_core::Aabb;
-use shapeloom_core::glam::DVec2;
+use std::sync::Arc;
+
+use shapeloom_core::glam::{DVec2, DVec3};
+use shapeloom_core::{Aabb, Exec};
 
 use super::bind::{Bound, Kind, Missing, Parameter, Signature};
 use super::transforms;
 use super::value::{Value, binary, unary};
+use crate::blobs::{Blob, BlobForm, Blobs, BlobsError};
 use crate::operator::{Binary, Unary};
 use crate::program::ParameterError;
 use crate::shapes::{BlendForm, Domain, Primitive, Quadric, SetOperation};
@@ -18,6 +21,7 @@ pub(super) struct Function {
     name: &'static str,
     parameters: &'static [Parameter],
     many: bool,
+    group: &'static [&'static str],
     build: Build,
 }
 
@@ -51,11 +55,11 @@ const fn value(name: &'static str) -> Parameter {
 }
 
 const fn function(name: &'static str, parameters: &'static [Parameter], build: Build) -> Function {
-    Function { name, parameters, many: false, build }
+    Function { name, parameters, many: false, group: &[], build }
 }
 
 const fn set(name: &'static str, build: Build) -> Function {
-    Function { name, parameters: &[], many: true, build }
+    Function { name, parameters: &[], many: true, group: &[], build }
 }
 
 const A: Parameter = field("a");
@@ -68,6 +72,32 @@ const AXES: &[Parameter] = &[number("a"), number("b"), number("c")];
 const R_FUNCTION: &[Parameter] = &[A, field("b"), number("alpha")];
 const DISPLACED: &[Parameter] = &[A, field("b"), number("alpha"), number("amount"), number("first"), number("second")];
 const SMOOTH: &[Parameter] = &[A, field("b"), RADIUS];
+
+/// Blobs: numbers for all, then five for each.
+const fn blobs(name: &'static str, group: &'static [&'static str], build: Build) -> Function {
+    Function { name, parameters: const { &[number("threshold"), number("cutoff")] }, many: false, group, build }
+}
+
+fn sum_of(form: BlobForm, bound: &Bound) -> Result<Tree, ParameterError> {
+    let (groups, _) = bound.rest.as_chunks::<5>();
+    let blobs = groups.iter().map(|&[x, y, z, a, b]| Blob::new(DVec3::new(x, y, z), a, b)).collect();
+    let [threshold, cutoff] = bound.numbers(0);
+    let made = Blobs::try_new_with(form, threshold, blobs, cutoff, &Exec::default());
+    made.map(|blobs| Tree::new(Operation::Blobs(Arc::new(blobs)))).map_err(|error| {
+        let (index, parameter, found, expected) = match error {
+            BlobsError::Parameter { index, parameter, found, expected } => (Some(index), parameter, found, expected),
+            BlobsError::Center { index, found } => (Some(index), "centre", found, "finite coordinates"),
+            BlobsError::Threshold { found } => (None, "threshold", found, "a finite number above 0"),
+            BlobsError::Unreachable { threshold, .. } => {
+                (None, "threshold", threshold, "no more than the sum of all peaks")
+            }
+            BlobsError::Strength { found } => (None, "peaks that add up to", found, "less than single precision holds"),
+            BlobsError::Cutoff { found } => (None, "cutoff", found, "a number above 0 and at most 0.1"),
+            _ => (None, "blobs", groups.len() as f64, "some, and no more than memory holds"),
+        };
+        ParameterError { operation: form.name(), parameter, found, expected, part: index.map(|i| format!("blob {i}")) }
+    })
+}
 
 fn solid(primitive: Primitive) -> Result<Tree, ParameterError> {
     Ok(primitive.into())
@@ -114,6 +144,10 @@ fn repeat(bound: &Bound) -> Result<Tree, ParameterError> {
 /// Every function but those named after operators of one or two operands.
 static FUNCTIONS: &[Function] = &[
     function("constant", &[number("value")], |b| Ok(b.number(0).into())),
+    blobs("blinn", &["x", "y", "z", "amplitude", "decay"], |b| sum_of(BlobForm::Blinn, b)),
+    blobs("blobby", &["x", "y", "z", "radius", "blobbiness"], |b| sum_of(BlobForm::Blobby, b)),
+    blobs("metaballs", &["x", "y", "z", "radius", "amplitude"], |b| sum_of(BlobForm::Metaballs, b)),
+    blobs("soft_objects", &["x", "y", "z", "radius", "weight"], |b| sum_of(BlobForm::SoftObjects, b)),
     // Solids.
     function("plane", &[X, Y, Z, number_or("offset", 0.0)], |b| {
         solid(Primitive::Plane { normal: b.vector(0), offset: b.number(3) })
@@ -257,6 +291,7 @@ const BOUNDS: Signature = Signature {
     name: "bounds",
     parameters: &[number("x1"), number("y1"), number("z1"), number("x2"), number("y2"), number("z2")],
     many: false,
+    group: &[],
 };
 
 impl Callee {
@@ -280,13 +315,18 @@ impl Callee {
     /// What it takes.
     pub(super) fn signature(self) -> Signature {
         match self {
-            Self::Function(Function { name, parameters, many, .. }) => Signature { name, parameters, many: *many },
+            Self::Function(Function { name, parameters, many, group, .. }) => {
+                Signature { name, parameters, many: *many, group }
+            }
             Self::Unary(operator) => {
-                Signature { name: operator.name(), parameters: const { &[value("a")] }, many: false }
+                Signature { name: operator.name(), parameters: const { &[value("a")] }, many: false, group: &[] }
             }
-            Self::Binary(operator) => {
-                Signature { name: operator.name(), parameters: const { &[value("a"), value("b")] }, many: false }
-            }
+            Self::Binary(operator) => Signature {
+                name: operator.name(),
+                parameters: const { &[value("a"), value("b")] },
+                many: false,
+                group: &[],
+            },
             Self::Bounds => BOUNDS,
         }
     }

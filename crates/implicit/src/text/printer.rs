@@ -11,6 +11,7 @@ use super::parser::{is_reserved, is_sharing};
 use super::quoted::quoted;
 use super::transforms;
 use super::value::{Infix, POWER, PREFIX, PRIMARY};
+use crate::blobs::Blobs;
 use crate::operator::{Binary, Unary};
 use crate::shapes::{Blend, BlendForm, Domain, Primitive, Quadric, SetOperation};
 use crate::tree::{Axis, Operation, Tree, post_order};
@@ -212,6 +213,7 @@ impl<'a> Printer<'a> {
                 whole(format!("{}.substitute({x}, {y}, {z})", next().receiver()))
             }
             Operation::Named(..) => next(),
+            Operation::Blobs(blobs) => whole(of_blobs(blobs)),
             Operation::Foreign(foreign) => whole(written(foreign.source())),
         }
     }
@@ -289,6 +291,15 @@ fn of_primitive(primitive: &Primitive) -> String {
             Quadric::General(coefficients) => of(&coefficients),
         },
     }
+}
+
+fn of_blobs(blobs: &Blobs) -> String {
+    let mut numbers = vec![blobs.threshold(), blobs.cutoff()];
+    for blob in blobs.blobs() {
+        numbers.extend(blob.center.to_array());
+        numbers.extend(blob.parameters);
+    }
+    format!("{}({})", blobs.form().name(), listed(&numbers))
 }
 
 fn of_blend(blend: &Blend) -> String {
