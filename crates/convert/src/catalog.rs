@@ -1,6 +1,7 @@
 //! The list of converters: a new one is one line here.
 
 use shapeloom_core::glam::DVec3;
+use shapeloom_implicit::{Implicit, SampledSurface};
 use shapeloom_mesh::{
     Compact, ConstrainedDelaunay, DelaunayTriangulation, GeometricGraph, GreedyInsertion, HeightField, OrientFaces,
     PlanarizeQuads, PointCloud, PolyMesh, Polyline, TriMesh, TriangulateHeightField, TriangulatePolygons,
@@ -21,6 +22,7 @@ pub fn catalog() -> Vec<Converter> {
     vec![
         entry::<TessellatePatches, BezierSurface>(Effect::WithinTolerance),
         entry::<TessellateCurve, BezierCurve<DVec3>>(Effect::WithinTolerance),
+        entry::<SampledSurface, Implicit>(Effect::Reported),
         entry::<ManifoldSurfaceNets, VoxelGrid>(Effect::Reported),
         entry::<SurfaceNets, VoxelGrid>(Effect::Reported),
         entry::<DualContouring, VoxelGrid>(Effect::Reported),

@@ -1,11 +1,12 @@
 //! An implicit shape as a value: its tree, compiled, and where it lies.
 
 use std::fmt;
+use std::sync::{Arc, OnceLock};
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Aabb, Affine, Category, Diagnostic, Field, Interval, Restricted};
+use shapeloom_core::{Aabb, Affine, Category, Diagnostic, Exec, Field, Interval, Restricted};
 
-use crate::{CompileError, Nature, Program, Tree};
+use crate::{CompileError, Nature, Program, Tree, find_bounds};
 
 /// A tree with its program and, where it was given, the box that holds the shape. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -13,6 +14,7 @@ pub struct Implicit {
     tree: Tree,
     program: Program,
     given: Option<Aabb>,
+    found: Arc<OnceLock<Aabb>>,
 }
 
 impl Implicit {
@@ -22,7 +24,7 @@ impl Implicit {
     /// Whatever [`Tree::compile`] finds.
     pub fn new(tree: Tree) -> Result<Self, CompileError> {
         let program = tree.compile()?;
-        Ok(Self { tree, program, given: None })
+        Ok(Self { tree, program, given: None, found: Arc::default() })
     }
 
     /// The shape, to be looked at in a box alone.
@@ -53,9 +55,10 @@ impl Implicit {
         self.given
     }
 
-    /// The box that was given; empty where none was.
+    /// The box that was given, else one found by [`find_bounds`], once; empty where the shape is, or has no end.
     pub fn bounds(&self) -> Aabb {
-        self.given.unwrap_or(Aabb::EMPTY)
+        let find = || find_bounds(&self.program, &Exec::default()).map_or(Aabb::EMPTY, |found| found.bounds);
+        self.given.unwrap_or_else(|| *self.found.get_or_init(find))
     }
 
     /// What is known of the values.
@@ -105,6 +108,10 @@ impl Field for Implicit {
 
     fn lipschitz(&self) -> Option<f64> {
         self.program.lipschitz()
+    }
+
+    fn extent(&self) -> Option<Aabb> {
+        self.given
     }
 
     fn restrict(&self, region: &Aabb) -> Restricted {

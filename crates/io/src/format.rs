@@ -8,7 +8,7 @@ use shapeloom_shape::{Kind, Shape, UpAxis};
 
 use crate::{
     ReadContext, ReadError, ReadShape, WriteContext, WriteError, asc, bpt, dem, gltf, implicit_text, metaimage, nrrd,
-    obj, off, pgm, ply, png, raw, slc, stl, svg, tiff, vti, vtk,
+    obj, off, pdb, pgm, ply, png, raw, slc, stl, svg, tiff, vti, vtk, xyz_molecule,
 };
 
 /// Reads a whole file. Errors need not name the input: [`read`](crate::read()) does.
@@ -202,6 +202,8 @@ pub static FORMATS: &[Format] = &[
     slc::FORMAT,
     raw::FORMAT,
     svg::FORMAT,
+    pdb::FORMAT,
+    xyz_molecule::FORMAT,
     implicit_text::VM,
     implicit_text::SHAPE,
 ];

@@ -32,6 +32,10 @@ options! {
             /// The distances between samples along x, y and z in raw volumes and stacks of pictures, such as 0.5x0.5x2, or
             /// one number for all three.
             voxel_size: String = "1".to_owned(),
+            /// How hard the atoms of molecules are: small numbers blur them to one lump, from 8 on they keep their balls.
+            blobbiness: f64 [Bounds { max: 64.0, ..Bounds::POSITIVE }] = 2.0,
+            /// What the van der Waals radii of the atoms of molecules are multiplied by.
+            atom_scale: f64 [Bounds::POSITIVE] = 1.0,
             /// Whether a picture is a slice of a volume, whose others are the files beside it with the numbers that follow
             /// the one in its name, or the further pages of its file.
             stack: bool = false,

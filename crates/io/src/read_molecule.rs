@@ -1,12 +1,15 @@
 //! What readers of molecules share.
 
-use shapeloom_core::{Findings, Place};
-use shapeloom_implicit::{Atom, Molecule};
+use std::sync::Arc;
+
+use shapeloom_core::{Diagnostic, Findings, Place};
+use shapeloom_implicit::{Atom, AtomBlobs, Implicit, Molecule, Operation, Tree};
+use shapeloom_shape::{Part, Shape};
 
 use crate::memory::{Growing, Memory};
 use crate::read::too_long;
 use crate::text::{NumberFault, parse_number, plain_text, quoted};
-use crate::{Fault, ReadContext, ReadError};
+use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 /// The molecule of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +18,32 @@ pub struct ReadMolecule {
     pub molecule: Molecule,
     /// What was odd about the file and what was made of it.
     pub findings: Findings,
+}
+
+impl ReadMolecule {
+    /// The molecule as the sum of a blob for each atom.
+    pub(crate) fn into_shape(self, context: &ReadContext) -> Result<ReadShape, ReadError> {
+        let options = AtomBlobs {
+            blobbiness: context.options.blobbiness,
+            scale: context.options.atom_scale,
+            ..AtomBlobs::default()
+        };
+        let fault = |error: &dyn Diagnostic| {
+            Fault::new(error.code(), Place::Whole, error.to_string(), "atoms that make a surface")
+                .category(error.category())
+        };
+        let blobs = self.molecule.blobs(&options).map_err(|error| fault(&error))?;
+        let bounds = blobs.bounds();
+        let tree = Tree::new(Operation::Blobs(Arc::new(blobs)));
+        let mut implicit = Implicit::new(tree).map_err(|error| fault(&error))?;
+        if !bounds.is_empty() {
+            // Room of a hundredth, so that nothing touches the border.
+            let padded = bounds.padded(bounds.diagonal() * 0.01);
+            implicit = implicit.within(padded).map_err(|error| fault(&error))?;
+        }
+        let shape = Shape::new(Part::new(implicit).named(self.molecule.title));
+        Ok(ReadShape { findings: self.findings, ..ReadShape::new(shape) })
+    }
 }
 
 /// Runs a reader within the limits, on text without a byte order mark, and names the input in its errors.

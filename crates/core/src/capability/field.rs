@@ -45,6 +45,11 @@ pub trait Field: Send + Sync {
         None
     }
 
+    /// The box in which the shape is to be looked at, where one was given. Nothing is known by default.
+    fn extent(&self) -> Option<Aabb> {
+        None
+    }
+
     /// The field inside a box, perhaps simpler there. The default asks [`Field::range`].
     fn restrict(&self, region: &Aabb) -> Restricted {
         let range = self.range(region);

@@ -49,7 +49,8 @@ options! {
         optional {
             /// How triangles are drawn.
             method: SurfaceMethod = SurfaceMethod::SurfaceNets,
-            /// Where to look: `auto`, or six numbers, the least corner first; the shape is cut off there.
+            /// Where to look: six numbers, the least corner first, and the shape is cut off there; or `auto`, the box that the field
+            /// names, else one found by intervals.
             region: Region = Region::Auto,
             /// Whether vertices are moved to the zero of the field.
             refine: bool = true,
@@ -67,7 +68,8 @@ options! {
 /// sagitta h² / 8r: from a 16th to a 1024th of the diagonal.
 impl<F: Field + ?Sized> FromTolerance<F> for SampledSurface {
     fn from_tolerance(source: &F, tolerance: f64) -> Self {
-        let found = find_bounds(source, &Exec::default()).map_or(Aabb::EMPTY, |found| found.bounds);
+        let find = || find_bounds(source, &Exec::default()).map_or(Aabb::EMPTY, |found| found.bounds);
+        let found = source.extent().unwrap_or_else(find);
         let diagonal = if found.is_empty() { 1.0 } else { found.diagonal() };
         let size = (tolerance * diagonal / 2.0).sqrt();
         Self::new(if size.is_nan() { size } else { size.clamp(diagonal / 1024.0, diagonal / 16.0) })
@@ -79,7 +81,11 @@ impl<F: Field + ?Sized> Convert<F> for SampledSurface {
 
     fn convert_with(&self, source: &F, exec: &Exec) -> Result<Converted<TriMesh>, ConvertError> {
         self.validate()?;
-        let (region, searched) = match self.region {
+        let region = match (self.region, source.extent()) {
+            (Region::Auto, Some(given)) => Region::Box(given),
+            (region, _) => region,
+        };
+        let (region, searched) = match region {
             Region::Box(given) => {
                 if !(given.min.is_finite() && given.size().is_finite() && given.min.cmplt(given.max).all()) {
                     return Err(MeshingError::Region { found: given }.into());

@@ -8,3 +8,25 @@ mod read;
 mod tests;
 
 pub use read::{looks_like_xyz_molecule, read_xyz_molecule};
+
+use shapeloom_shape::Kind;
+
+use crate::{Format, Precision, Sniff};
+
+/// XYZ molecule.
+pub(crate) const FORMAT: Format = Format {
+    id: "molecule-xyz",
+    name: "XYZ molecule",
+    extensions: &["xyz"],
+    media_type: "chemical/x-xyz",
+    text: true,
+    up: None,
+    precision: Precision::F64,
+    kinds: &[Kind::Implicit],
+    keeps: &[],
+    read_options: &["blobbiness", "atom_scale"],
+    write_options: &[],
+    sniff: |input| if looks_like_xyz_molecule(input) { Sniff::Likely } else { Sniff::No },
+    reads: Some(|input, context| read_xyz_molecule(input, context)?.into_shape(context)),
+    writes: None,
+};
