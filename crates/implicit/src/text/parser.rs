@@ -252,7 +252,7 @@ impl<'a, 'r> Parser<'a, 'r> {
         if let Token::Sign(sign) = self.current.token
             && let Some(operator) = Infix::from_sign(sign)
         {
-            self.reduce(operator.level() + u8::from(operator.is_right_associative()))?;
+            self.reduce(operator.level() + u8::from(operator.groups_rightward()))?;
             self.begin(Mark::Infix(operator, at))?;
             self.advance()?;
             return Ok(Some(false));

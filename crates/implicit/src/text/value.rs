@@ -104,7 +104,7 @@ impl Infix {
     }
 
     /// Whether `a ^ b ^ c` is `a ^ (b ^ c)`.
-    pub(super) fn is_right_associative(self) -> bool {
+    pub(super) fn groups_rightward(self) -> bool {
         self == Self::Power
     }
 }

@@ -304,6 +304,6 @@ fn the_files_of_the_repository_are_shapes() {
                 }
             }
         }
-        assert!(inside > 100, "{inside}");
+        assert!(inside > 30, "{inside}");
     }
 }
