@@ -257,10 +257,14 @@ mod tests {
             let program = tree.compile().unwrap();
             for _ in 0..20 {
                 asked += 1;
-                let Ok(found) = project(&program, numbers.point(1.5), 1e-7) else { continue };
+                let p = numbers.point(1.5);
+                let Ok(found) = project(&program, p, 1e-7) else { continue };
                 reached += 1;
                 let proven = found.certainty == Certainty::Proven;
-                assert!(proven || found.value.abs() < 1e-3, "{tree:?} {found:?}");
+                // A side may change by a jump, which no bounds prove.
+                let arm = (found.point - p).normalize_or_zero() * 1e-6;
+                let jumps = Side::of(program.value(found.point + arm)) != Side::of(program.value(found.point - arm));
+                assert!(proven || jumps || found.value.abs() < 1e-3, "{tree:?} {found:?}");
             }
         }
         assert!(reached * 3 > asked, "{reached} of {asked}");

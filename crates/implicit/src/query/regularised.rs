@@ -115,8 +115,10 @@ mod tests {
             let a = Tree::cuboid(first, 1.0, 1.0).translate(first / 2.0, 0.0, 0.0);
             let b = Tree::cuboid(second, 1.0, 1.0).translate(first + second / 2.0, 0.0, 0.0);
             let both = a.intersection(b);
-            below += usize::from(both.compile().unwrap().value(DVec3::X * first) < 0.0);
-            assert_eq!(place(&both, first, 0.1), PointPlace::Outside, "{first} {second}");
+            for x in [first.next_down(), first, first.next_up()] {
+                below += usize::from(both.compile().unwrap().value(DVec3::X * x) < 0.0);
+                assert_eq!(place(&both, x, 0.1), PointPlace::Outside, "{first} {second}");
+            }
         }
         assert!(below > 0);
     }
