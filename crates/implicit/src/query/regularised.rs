@@ -109,10 +109,18 @@ mod tests {
 
     #[test]
     fn rounding_makes_no_interior() {
-        // 0.1 + 0.2 is not 0.3: the face of one lies 5e-17 within the other, far less than values are rounded by.
-        let a = Tree::cuboid(0.3, 1.0, 1.0).translate(0.15, 0.0, 0.0);
-        let b = Tree::cuboid(0.2, 1.0, 1.0).translate(0.1 + 0.2 + 0.1, 0.0, 0.0);
-        assert_eq!(place(&a.intersection(b), 0.3, 0.1), PointPlace::Outside);
+        // As 0.1 + 0.2 is not 0.3, faces that should meet lie 1e-16 apart or within one another, less than values are rounded by.
+        let mut below = 0;
+        for (first, second) in (1..40).map(|i| (0.1 * f64::from(i), 0.7 + 0.03 * f64::from(i))) {
+            let a = Tree::cuboid(first, 1.0, 1.0).translate(first / 2.0, 0.0, 0.0);
+            let b = Tree::cuboid(second, 1.0, 1.0).translate(first + second / 2.0, 0.0, 0.0);
+            let both = a.intersection(b);
+            for x in [first.next_down(), first, first.next_up()] {
+                below += usize::from(both.compile().unwrap().value(DVec3::X * x) < 0.0);
+                assert_eq!(place(&both, x, 0.1), PointPlace::Outside, "{first} {second}");
+            }
+        }
+        assert!(below > 0);
     }
 
     #[test]

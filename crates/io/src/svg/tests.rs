@@ -22,9 +22,9 @@ fn attributes(text: &str, element: &str, attribute: &str) -> Vec<String> {
     let mut found = Vec::new();
     loop {
         match reader.read_event().expect("well-formed XML") {
-            Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == element.as_bytes() => {
+            Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == element => {
                 let value = tag.try_get_attribute(attribute).unwrap();
-                found.extend(value.map(|value| String::from_utf8(value.value.to_vec()).unwrap()));
+                found.extend(value.map(|value| value.value.into_owned()));
             }
             Event::Eof => return found,
             _ => {}
