@@ -4,7 +4,7 @@ use std::fmt;
 
 use shapeloom_core::{ConvertError, Exec, Place, Report, Severity, choice};
 
-use crate::{IsoValue, Otsu, Slabs, otsu_threshold};
+use crate::{IsoValue, Otsu, Slabs, otsu_threshold, sample_range};
 
 /// On which side of the iso value the inside is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +153,7 @@ impl Level {
             report.findings.push_many("W-iso-not-finite", Severity::Warning, Place::Whole, message, not_finite);
         }
         if triangles == 0 {
-            let message = match range(slabs, exec)? {
+            let message = match sample_range(slabs, exec)?.finite {
                 Some([low, high]) => {
                     format!("no surface: the iso value is {}, the samples run from {low} to {high}", self.iso)
                 }
@@ -163,20 +163,6 @@ impl Level {
         }
         Ok(())
     }
-}
-
-/// The smallest and the largest finite sample.
-fn range<S: Slabs + ?Sized>(slabs: &S, exec: &Exec) -> Result<Option<[f32; 2]>, ConvertError> {
-    let mut buffer = Vec::new();
-    let mut range: Option<[f32; 2]> = None;
-    for k in 0..slabs.lattice().dimensions()[2] {
-        exec.check()?;
-        for &sample in slabs.slab(k, &mut buffer)?.iter().filter(|sample| sample.is_finite()) {
-            let [low, high] = range.unwrap_or([sample; 2]);
-            range = Some([low.min(sample), high.max(sample)]);
-        }
-    }
-    Ok(range)
 }
 
 #[cfg(test)]
