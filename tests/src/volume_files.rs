@@ -54,6 +54,20 @@ fn pictures_with_numbers_are_slices() {
         let sample = if size == 1 { u16::from(bytes[at]) } else { u16::from_le_bytes([bytes[at], bytes[at + 1]]) };
         assert_eq!(sample, scale * value(6, 2, 3), "{name}");
     }
+    // Options of the other kind of picture.
+    for (options, words) in [
+        (["stack=true", "height=3"], "the option height = 3 with stack = true"),
+        (["stack=true", "exaggeration=2"], "the option exaggeration = 2 with stack = true"),
+        (["stack=true", "spacing=2"], "the option spacing = 2 with stack = true"),
+        (["stack=true", "encoding=mapbox"], "the option encoding = mapbox with stack = true"),
+        (["stack=true", "dimensions=7x5x4"], "--set dimensions for"),
+        (["stack=false", "voxel_size=2"], "the option voxel_size = 2 without stack = true"),
+    ] {
+        for name in ["b0.png", "c0.tif"] {
+            let refused = run(&["info", &path(name), "--set", options[0], "--set", options[1]]);
+            assert!(refused.code == 2 && refused.err.contains(words), "{name} {options:?}: {}", refused.err);
+        }
+    }
     // A gap, another size, and a name without a number.
     std::fs::remove_file(path("b2.png")).expect("it was there");
     let words = |name: &str| run(&["info", &path(name), "--set", "stack=true"]);
