@@ -116,12 +116,18 @@ fn numbered(value: &str) -> Option<(&str, Vec<&str>)> {
     let mut words = Vec::new();
     while let Some((before, word)) = rest.rsplit_once(|char: char| char.is_ascii_whitespace())
         && words.len() < 4
-        && word.parse::<i64>().is_ok()
+        && is_number(word)
     {
         words.insert(0, word);
         rest = before.trim_end();
     }
     (conversion(rest).is_some() || (words.len() >= 3 && rest.contains('%'))).then_some((rest, words))
+}
+
+/// Digits, maybe behind a minus.
+fn is_number(word: &str) -> bool {
+    let digits = word.strip_prefix('-').unwrap_or(word);
+    !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// What stands before and after the one number of a pattern, its least digits, and whether zeros fill them.

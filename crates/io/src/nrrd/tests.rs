@@ -158,7 +158,7 @@ fn wrong_lists_of_files_are_refused_before_anything_is_opened() {
         ("data file: a%d 0 1 1", "E-nrrd-count", "2 files, expected 4"),
         ("data file: a%d 0 2 1 3", "E-nrrd-count", "3 files, expected a number that divides the last of the sizes, 4"),
         ("data file: a%d 0 1 1 4", "E-nrrd-count", "axes in each file from 1 to 3"),
-        ("data file: a%d 0 18446744073709551615 1", "E-nrrd-count", "18446744073709551615 files"),
+        ("data file: a%d 0 18446744073709551615 1", "E-nrrd-count", "18446744073709551615 files, expected 4"),
         ("data file: a%d 0 1 0", "E-nrrd-header", "the step"),
         ("data file: a%d 1 0 1", "E-nrrd-header", "the step"),
         ("data file: a%d 0 1", "E-nrrd-header", "the step"),
@@ -176,6 +176,7 @@ fn wrong_lists_of_files_are_refused_before_anything_is_opened() {
         assert!(error.code() == code && error.to_string().contains(words), "{field}: {error}");
     }
     // What a header claims is not taken before files are there.
-    let huge = "type: double\ndimension: 3\nsizes: 4000 4000 60000\nencoding: gzip\ndata file: a%d 1 60000 1";
+    let huge =
+        "type: double\ndimension: 3\nsizes: 4000 4000 60000\nendian: little\nencoding: gzip\ndata file: a%d 1 60000 1";
     assert_eq!(beside(huge, &files).unwrap_err().code(), "E-volume-truncated");
 }

@@ -116,7 +116,7 @@ fn packed_metaimages_that_end_within_their_checksum_are_told() {
         same_samples(grid(&read.shape), &own);
         assert_eq!(read.findings.iter().map(|finding| finding.code).collect::<Vec<_>>(), ["W-volume-truncated"]);
     }
-    let few = read(&bytes[..bytes.len() - 5], format_by_id("mha").unwrap(), &ReadContext::named("a")).unwrap_err();
+    let few = read(&bytes[..bytes.len() - 9], format_by_id("mha").unwrap(), &ReadContext::named("a")).unwrap_err();
     assert_eq!(shapeloom_core::Diagnostic::code(&few), "E-volume-truncated");
 }
 
