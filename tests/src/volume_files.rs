@@ -139,3 +139,34 @@ fn every_format_of_volumes_becomes_every_other() {
     let refused = run(&["info", &path("e.raw")]);
     assert!(refused.code == 2 && refused.err.contains("dimensions=XxYxZ"), "{} {}", refused.code, refused.err);
 }
+
+/// Whatever makes triangles of a volume says that it guessed where, and why there are none.
+#[test]
+fn a_guessed_or_empty_surface_is_said_by_every_command() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let (volume, out) = (data("orbital.nrrd"), folder.path().join("out.glb").display().to_string());
+    let picture = folder.path().join("out.png").display().to_string();
+    for words in [
+        vec!["convert", &volume, &out],
+        vec!["render", &volume, &picture, "--size", "32x24"],
+        vec!["compare", &volume, &volume],
+    ] {
+        let guessed = run(&words);
+        assert!(guessed.code == 0 && guessed.err.contains("warning[W-iso-otsu]"), "{words:?}: {}", guessed.err);
+        let given =
+            run(&[&words[..], &["--set", "iso=100", "--force"][..2 + usize::from(words[0] != "compare")]].concat());
+        assert!(given.code == 0 && !given.err.contains("W-iso"), "{words:?}: {}", given.err);
+    }
+    let checked = run(&["check", &volume]);
+    assert!(checked.out.contains("warning[W-iso-otsu]"), "{} {}", checked.out, checked.err);
+
+    let empty = run(&["convert", &volume, &out, "--set", "iso=1e9", "--force"]);
+    let wanted = [
+        "one side of the iso value 1000000000, so the mesh is empty",
+        "set iso to a value between",
+        "which is empty: glTF",
+    ];
+    assert!(empty.code == 0 && wanted.iter().all(|words| empty.err.contains(words)), "{}", empty.err);
+    let drawn = run(&["render", &volume, &picture, "--set", "iso=1e9", "--force"]);
+    assert!(drawn.code == 4 && drawn.err.contains("W-iso-empty"), "{} {}", drawn.code, drawn.err);
+}

@@ -41,6 +41,17 @@ fn ranges_of_axes_become_spacings() {
     }
 }
 
+/// Of four axes the first one of a single sample goes, with what is said of it.
+#[test]
+fn each_axis_has_its_own_spacing_and_axes_of_one_sample_go() {
+    let fields = "type: uchar\ndimension: 4\nencoding: raw\nspacings: NaN 2 3 5\naxis mins: NaN 1 7 9\nsizes: 1 2 1 4";
+    let read = attempt(fields, b"12345678").unwrap();
+    let lattice = grid(&read).lattice();
+    assert_eq!(lattice.dimensions(), [2, 1, 4]);
+    assert_eq!((lattice.position([0; 3]), lattice.spacing()), (DVec3::new(1.0, 7.0, 9.0), DVec3::new(2.0, 3.0, 5.0)));
+    assert_eq!(attempt(&fields.replace("1 2 1 4", "2 2 1 2"), b"12345678").unwrap_err().code(), "E-volume-spacing");
+}
+
 #[test]
 fn directions_units_and_words_are_read() {
     let fields = "Space Directions: (0,2,0) (-1,0,0) (0,0.5,3)\nspace origin: (1,2,3)\nspace: RAS\nspace units: \"um\" \"um\" \"um\"\n\

@@ -84,7 +84,11 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
         size: scalar.size() as u64,
         stored_size: scalar.stored_size() as u64,
     };
-    let dimensions = room.check(sizes, Place::Whole, "option dimensions", &payload, context)?;
+    let dimensions = room.check(sizes, Place::Whole, "option dimensions", &payload, context).map_err(|fault| {
+        let ours = ["E-volume-claim", "E-volume-truncated"].contains(&fault.code);
+        let advice = "mend the options dimensions, scalar and skip, or get a complete copy of the file";
+        if ours { fault.advice(advice) } else { fault }
+    })?;
     let lattice = frame.lattice(dimensions, Place::Whole)?;
     let coding = Coding {
         packing: Packing::Plain,
