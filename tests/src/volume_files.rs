@@ -144,21 +144,22 @@ fn every_format_of_volumes_becomes_every_other() {
 #[test]
 fn a_guessed_or_empty_surface_is_said_by_every_command() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let (volume, out) = (data("orbital.nrrd"), folder.path().join("out.glb").display().to_string());
-    let picture = folder.path().join("out.png").display().to_string();
+    let volume = data("orbital.nrrd");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (out, picture) = (path("out.glb"), path("out.png"));
     for words in [
-        vec!["convert", &volume, &out],
-        vec!["render", &volume, &picture, "--size", "32x24"],
-        vec!["compare", &volume, &volume],
+        &["convert", &volume, &out, "--force"][..],
+        &["render", &volume, &picture, "--force", "--size", "32x24"],
+        &["compare", &volume, &volume],
     ] {
-        let guessed = run(&words);
+        let guessed = run(words);
         assert!(guessed.code == 0 && guessed.err.contains("warning[W-iso-otsu]"), "{words:?}: {}", guessed.err);
-        let given =
-            run(&[&words[..], &["--set", "iso=100", "--force"][..2 + usize::from(words[0] != "compare")]].concat());
+        let given = run(&[words, &["--set", "iso=100"]].concat());
         assert!(given.code == 0 && !given.err.contains("W-iso"), "{words:?}: {}", given.err);
     }
     let checked = run(&["check", &volume]);
-    assert!(checked.out.contains("warning[W-iso-otsu]"), "{} {}", checked.out, checked.err);
+    let words = String::from_utf8_lossy(&checked.out).into_owned() + &checked.err;
+    assert!(words.contains("warning[W-iso-otsu]"), "{words}");
 
     let empty = run(&["convert", &volume, &out, "--set", "iso=1e9", "--force"]);
     let wanted = [
