@@ -4,10 +4,11 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use shapeloom::core::Convert;
 use shapeloom::core::glam::DVec3;
+use shapeloom::core::{Convert, Exec};
 use shapeloom::mesh::PointCloud;
 use shapeloom::render::{Picture, Scene};
+use shapeloom::voxels::isosurface::sample_range;
 use shapeloom::voxels::{PointWeight, PointsToGrid};
 use shapeloom_examples::{Output, boxes};
 
@@ -38,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             made.value.samples().name(),
             sum * volume
         );
-        println!("  from {:?}", made.value.range().finite);
+        println!("  from {:?}", sample_range(&made.value, &Exec::default())?.finite);
         let is_dense = |cell: [u32; 3]| f64::from(made.value.sample(cell)) >= at_least;
         let mut cells = boxes(&made.value, is_dense, [0.075, 0.24, 0.48]);
         cells.positions.iter_mut().for_each(|position| position.x += x);

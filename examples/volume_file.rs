@@ -8,9 +8,11 @@
 
 use std::error::Error;
 
+use shapeloom::core::Exec;
 use shapeloom::io::{ReadContext, WriteContext, detect, format_by_id, read, write};
 use shapeloom::shape::{Representation, Shape};
 use shapeloom::voxels::VoxelGrid;
+use shapeloom::voxels::isosurface::sample_range;
 
 fn grid(shape: &Shape) -> Result<&VoxelGrid, Box<dyn Error>> {
     Ok(VoxelGrid::from_geometry(&shape.parts[0].geometry)?)
@@ -26,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [x, y, z] = lattice.dimensions();
     println!("{x} x {y} x {z} samples of {}, {} apart", density.samples().name(), lattice.spacing());
     println!("from {} on", lattice.position([0; 3]));
-    println!("values {:?}", density.range().finite);
+    println!("values {:?}", sample_range(density, &Exec::default())?.finite);
 
     // The part of space where the density is above an eighth, cell by cell.
     let above = (0..lattice.samples()).filter(|&at| density.samples().get(at) > 31.5).count();

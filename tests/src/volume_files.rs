@@ -54,6 +54,20 @@ fn pictures_with_numbers_are_slices() {
         let sample = if size == 1 { u16::from(bytes[at]) } else { u16::from_le_bytes([bytes[at], bytes[at + 1]]) };
         assert_eq!(sample, scale * value(6, 2, 3), "{name}");
     }
+    // Options of the other kind of picture.
+    for (options, words) in [
+        (["stack=true", "height=3"], "the option height = 3 with stack = true"),
+        (["stack=true", "exaggeration=2"], "the option exaggeration = 2 with stack = true"),
+        (["stack=true", "spacing=2"], "the option spacing = 2 with stack = true"),
+        (["stack=true", "encoding=mapbox"], "the option encoding = mapbox with stack = true"),
+        (["stack=true", "dimensions=7x5x4"], "--set dimensions for"),
+        (["stack=false", "voxel_size=2"], "the option voxel_size = 2 without stack = true"),
+    ] {
+        for name in ["b0.png", "c0.tif"] {
+            let refused = run(&["info", &path(name), "--set", options[0], "--set", options[1]]);
+            assert!(refused.code == 2 && refused.err.contains(words), "{name} {options:?}: {}", refused.err);
+        }
+    }
     // A gap, another size, and a name without a number.
     std::fs::remove_file(path("b2.png")).expect("it was there");
     let words = |name: &str| run(&["info", &path(name), "--set", "stack=true"]);
@@ -124,4 +138,36 @@ fn every_format_of_volumes_becomes_every_other() {
     );
     let refused = run(&["info", &path("e.raw")]);
     assert!(refused.code == 2 && refused.err.contains("dimensions=XxYxZ"), "{} {}", refused.code, refused.err);
+}
+
+/// Whatever makes triangles of a volume says that it guessed where, and why there are none.
+#[test]
+fn a_guessed_or_empty_surface_is_said_by_every_command() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let volume = data("orbital.nrrd");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (out, picture) = (path("out.glb"), path("out.png"));
+    for words in [
+        &["convert", &volume, &out, "--force"][..],
+        &["render", &volume, &picture, "--force", "--size", "32x24"],
+        &["compare", &volume, &volume],
+    ] {
+        let guessed = run(words);
+        assert!(guessed.code == 0 && guessed.err.contains("warning[W-iso-otsu]"), "{words:?}: {}", guessed.err);
+        let given = run(&[words, &["--set", "iso=100"]].concat());
+        assert!(given.code == 0 && !given.err.contains("W-iso"), "{words:?}: {}", given.err);
+    }
+    let checked = run(&["check", &volume]);
+    let words = String::from_utf8_lossy(&checked.out).into_owned() + &checked.err;
+    assert!(words.contains("warning[W-iso-otsu]"), "{words}");
+
+    let empty = run(&["convert", &volume, &out, "--set", "iso=1e9", "--force"]);
+    let wanted = [
+        "one side of the iso value 1000000000, so the mesh is empty",
+        "set iso to a value between",
+        "which is empty: glTF",
+    ];
+    assert!(empty.code == 0 && wanted.iter().all(|words| empty.err.contains(words)), "{}", empty.err);
+    let drawn = run(&["render", &volume, &picture, "--set", "iso=1e9", "--force"]);
+    assert!(drawn.code == 4 && drawn.err.contains("W-iso-empty"), "{} {}", drawn.code, drawn.err);
 }

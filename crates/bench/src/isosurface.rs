@@ -51,7 +51,7 @@ where
     figures.insert("samples".into(), json!(grid.lattice().samples()));
     figures.insert("vertices".into(), json!(made.value.positions().len()));
     figures.insert("triangles".into(), json!(made.value.triangles().len()));
-    figures.insert("working_bytes".into(), json!(made.report.find("working_bytes")));
+    figures.insert("bytes_a_sample".into(), json!(made.report.find("bytes_a_sample")));
     figures.insert("samples_per_cpu_s".into(), json!(grid.lattice().samples() as f64 / times.cpu));
     Ok(Outcome { input: format!("{name}: {}{how}", C::NAME), times, figures })
 }

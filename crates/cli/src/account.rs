@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 use shapeloom_convert::{Conversion, Step};
-use shapeloom_core::{Aabb, Deviation, Findings, Loss, OptionKind, OptionSpec, OptionValue, Place, Report, Severity};
+use shapeloom_core::{
+    Aabb, Deviation, Figure, Findings, Loss, OptionKind, OptionSpec, OptionValue, Place, Report, Severity, Words,
+};
 
 /// A number, or nothing where JSON has none for it.
 pub(crate) fn number(value: f64) -> Value {
@@ -105,15 +107,19 @@ pub(crate) fn steps(conversion: &Conversion, timings: bool) -> Value {
     conversion.steps.iter().enumerate().map(one).collect()
 }
 
+/// Whether a figure counts something; a value or a ratio may be whole by chance.
+fn is_count(figure: &Figure) -> bool {
+    figure.value.fract() == 0.0 && !["_value", "_a_sample"].iter().any(|end| figure.name.ends_with(end))
+}
+
 /// A step in a line of words.
 pub(crate) fn step_words(step: &Step, seconds: Option<f64>) -> String {
     let sizes: Vec<String> = step
         .report
         .figures
         .iter()
-        // Counts; a value such as the iso value may be whole by chance.
-        .filter(|figure| figure.value.fract() == 0.0 && !figure.name.ends_with("_value"))
-        .map(|figure| format!("{} {}", figure.value, figure.name.replace('_', " ")))
+        .filter(|figure| is_count(figure))
+        .map(|figure| format!("{} {}", Words(figure.value), figure.name.replace('_', " ")))
         .collect();
     let mut words = format!("{}: {} -> {}", step.converter, step.from, step.to);
     if step.parts.len() > 1 {
@@ -127,4 +133,23 @@ pub(crate) fn step_words(step: &Step, seconds: Option<f64>) -> String {
         words += &format!("; {seconds:.3} s");
     }
     words
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shapeloom_shape::Kind;
+
+    #[test]
+    fn a_step_tells_its_counts_and_huge_ones_in_short() {
+        let mut report = Report::new("march", Deviation::AtMost(2.0), "");
+        for (name, value) in [("triangles", 12.0), ("iso_value", 3.0), ("bytes_a_sample", 2.0), ("inner_cells", 2e28)] {
+            report.figure(name, value);
+        }
+        let (from, to) = (Kind::VoxelGrid, Kind::TriMesh);
+        let step = Step { converter: "march", parts: vec![0], from, to, options: Vec::new(), report };
+        let words = step_words(&step, Some(0.25));
+        assert!(words.contains(", 12 triangles, 2e28 inner cells; error "), "{words}");
+        assert!(words.ends_with("; 0.250 s"), "{words}");
+    }
 }

@@ -490,7 +490,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "W-iso-empty",
-        "No sample is on the other side of the iso value: the surface is empty. The message gives the range of the samples; set iso= to a value within it.",
+        "The surface has no triangles, and the mesh is empty: no sample is on the other side of the iso value, or the border is open and leaves no cell to draw in. The message gives the range of the samples; set iso to a value between its ends, or border=closed.",
     ),
     (
         "W-iso-not-finite",

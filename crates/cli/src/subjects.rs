@@ -1,10 +1,11 @@
 //! The meshes of an input: parts with faces, one by one or as one.
 
+use std::iter;
 use std::sync::Arc;
 
 use serde_json::{Map, Value, json};
 use shapeloom_convert::{Job, PlanError, convert_shape, plan};
-use shapeloom_core::{Category, Convert, Exec};
+use shapeloom_core::{Category, Convert, Exec, Finding, Severity};
 use shapeloom_mesh::{PolyMesh, TriMesh, Weld};
 use shapeloom_shape::{Geometry, Kind, Shape};
 
@@ -61,13 +62,13 @@ pub(crate) fn subjects(
             false => format!("part {index} \"{}\"", part.name),
         };
         let kind = part.geometry.kind();
-        let Some((mesh, remark)) = meshed(shape, index, job, exec)? else {
+        let Some((mesh, remarks)) = meshed(shape, index, job, exec)? else {
             words.push(format!("{named}: a {kind} has no faces, and was passed over"));
             continue;
         };
         let keys = [("part", json!(index)), ("name", json!(part.name)), ("kind", json!(kind.name()))];
         let keys = keys.map(|(key, value)| (key.to_owned(), value)).into_iter().collect();
-        found.push(Subject { named, keys, mesh, remarks: remark.into_iter().collect() });
+        found.push(Subject { named, keys, mesh, remarks });
     }
     if gathering.together && found.len() > 1 {
         let named = format!("{} parts together", found.len());
@@ -145,13 +146,13 @@ fn weld(subject: &mut Subject, exec: &Exec) -> Result<usize, Failure> {
     Ok(merged)
 }
 
-/// A part as a mesh where it is placed, and what was done to it for that; none where it has no faces.
-type Meshed = (Arc<Geometry>, Option<String>);
+/// A part as a mesh where it is placed, and what was done to it for that, with warnings; none where it has no faces.
+type Meshed = (Arc<Geometry>, Vec<String>);
 
 fn meshed(shape: &Shape, index: usize, job: &Job, exec: &Exec) -> Result<Option<Meshed>, Failure> {
     let part = &shape.parts[index];
     match part.geometry.kind() {
-        Kind::TriMesh | Kind::PolyMesh => Ok(Some((part.placed(), None))),
+        Kind::TriMesh | Kind::PolyMesh => Ok(Some((part.placed(), Vec::new()))),
         kind => {
             match plan(kind, &job.wish) {
                 Err(error @ PlanError::UnknownMethod { .. }) => return Err(error.into()),
@@ -160,8 +161,11 @@ fn meshed(shape: &Shape, index: usize, job: &Job, exec: &Exec) -> Result<Option<
             }
             let alone = Shape { parts: vec![part.clone()], ..shape.clone() };
             let conversion = convert_shape(&alone, job, exec)?;
-            let remark = format!("the {kind} is taken as triangles, error {}", conversion.deviation);
-            Ok(conversion.shape.parts.first().map(|part| (part.placed(), Some(remark))))
+            let taken = format!("the {kind} is taken as triangles, error {}", conversion.deviation);
+            let findings = conversion.steps.iter().flat_map(|step| step.report.findings.iter());
+            let warnings = findings.filter(|finding| finding.severity == Severity::Warning).map(Finding::to_string);
+            let remarks = iter::once(taken).chain(warnings).collect();
+            Ok(conversion.shape.parts.first().map(|part| (part.placed(), remarks)))
         }
     }
 }

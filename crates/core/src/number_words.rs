@@ -10,7 +10,7 @@ pub struct Words(pub f64);
 impl fmt::Display for Words {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let size = self.0.abs();
-        if size != 0.0 && size.is_finite() && !(1e-5..1e16).contains(&size) {
+        if size != 0.0 && size.is_finite() && !(1e-5..1e15).contains(&size) {
             write!(f, "{:e}", self.0)
         } else {
             write!(f, "{}", self.0)
@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn only_long_numbers_have_an_exponent() {
-        let words = [0.0, 10.0, -0.25, 1e300, -1e-300, 1e15, f64::NAN].map(|number| Words(number).to_string());
-        assert_eq!(words, ["0", "10", "-0.25", "1e300", "-1e-300", "1000000000000000", "NaN"]);
+        let words = [0.0, 10.0, -0.25, 1e300, -1e-300, 1e15, 999e12, f64::NAN].map(|number| Words(number).to_string());
+        assert_eq!(words, ["0", "10", "-0.25", "1e300", "-1e-300", "1e15", "999000000000000", "NaN"]);
     }
 }

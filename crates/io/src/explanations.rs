@@ -141,7 +141,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ),
     (
         "E-heights-option",
-        "An option of reading heights is out of its bounds, or does not apply: the option height is for pictures, whose samples are shades; samples that are heights already are multiplied by the option exaggeration.",
+        "An option of reading heights is out of its bounds, or does not apply: the option height is for pictures, whose samples are shades; samples that are heights already are multiplied by the option exaggeration. The option voxel_size is for slices of a volume, which stack=true reads.",
     ),
     (
         "E-heights-size",
@@ -408,7 +408,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-volume-number", "A sample of a volume in text is no number, or none that its type can hold."),
     (
         "E-volume-option",
-        "An option of reading volumes is missing or does not read as it should: dimensions and voxel_size are three numbers with x between, such as 256x256x128; voxel_size may be one number too.",
+        "An option of reading volumes is missing, is for something else, or does not read as it should. A raw volume needs dimensions; slices of a stack take voxel_size, and no option of height fields. dimensions and voxel_size are three numbers with x between, such as 256x256x128; voxel_size may be one number too.",
     ),
     ("E-volume-size", "A volume has no samples in some direction."),
     (
@@ -704,7 +704,7 @@ pub const EXPLANATIONS: &[(&str, &str)] = &[
     ("W-volume-trailing", "More bytes follow after the samples of a volume than its header says. They were not read."),
     (
         "W-volume-truncated",
-        "Compressed samples end before the checksum that follows them: all are there, but damage cannot be told. Get a complete copy.",
+        "A file ends after its last sample, but before the checksum of compressed samples or the last tags of XML: all samples are there, but damage cannot be told. Get a complete copy.",
     ),
     ("W-vti-piece", "A VTI file is one piece of a larger whole, whose other pieces are in other files."),
     (

@@ -11,6 +11,18 @@ use shapeloom_shape::{Geometry, Part, Shape};
 
 use crate::{Format, Keeps, WriteError};
 
+/// The one part of a shape, for formats that hold one of `what`.
+///
+/// # Errors
+/// No part, or several.
+pub(crate) fn only_part<'a>(shape: &'a Shape, format: &Format, what: &'static str) -> Result<&'a Part, WriteError> {
+    match shape.parts.as_slice() {
+        [] => Err(WriteError::Empty { format: format.id }),
+        [part] => Ok(part),
+        several => Err(WriteError::TooLarge { format: format.id, what, found: several.len() as u64, max: 1 }),
+    }
+}
+
 /// The losses that the format's table entry implies: names, parts, instances, materials, units, up axis, tables and
 /// comments, and columns of lists and of edges, where the format does not keep them. A writer that says it keeps lists or
 /// edge columns names those that it does not.

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use shapeloom_core::{ConvertError, Exec, Place, Report, Severity, choice};
+use shapeloom_core::{ConvertError, Exec, Place, Report, Severity, Words, choice};
 
-use crate::{IsoValue, Otsu, Slabs, otsu_threshold};
+use crate::{IsoValue, Otsu, Slabs, otsu_threshold, sample_range};
 
 /// On which side of the iso value the inside is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,30 +146,33 @@ impl Level {
             report.findings.push_many("W-iso-not-finite", Severity::Warning, Place::Whole, message, not_finite);
         }
         if triangles == 0 {
-            let message = match range(slabs, exec)? {
-                Some([low, high]) => {
-                    format!("no surface: the iso value is {}, the samples run from {low} to {high}", self.iso)
-                }
-                None => "no surface: no sample is finite".to_owned(),
-            };
+            let message = self.empty_words(sample_range(slabs, exec)?.finite);
             report.findings.push("W-iso-empty", Severity::Warning, Place::Whole, message);
         }
         Ok(())
     }
-}
 
-/// The smallest and the largest finite sample.
-fn range<S: Slabs + ?Sized>(slabs: &S, exec: &Exec) -> Result<Option<[f32; 2]>, ConvertError> {
-    let mut buffer = Vec::new();
-    let mut range: Option<[f32; 2]> = None;
-    for k in 0..slabs.lattice().dimensions()[2] {
-        exec.check()?;
-        for &sample in slabs.slab(k, &mut buffer)?.iter().filter(|sample| sample.is_finite()) {
-            let [low, high] = range.unwrap_or([sample; 2]);
-            range = Some([low.min(sample), high.max(sample)]);
+    /// Why a surface has no triangles, and what gives it some.
+    fn empty_words(&self, range: Option<[f32; 2]>) -> String {
+        let iso = Words(self.iso.into());
+        match range {
+            None => "no surface: no sample is finite, so the mesh is empty".to_owned(),
+            Some([low, high]) if low == high => {
+                format!("no surface: all samples are {}, so the mesh is empty", Words(low.into()))
+            }
+            Some([low, high]) if self.holds(low) == self.holds(high) => format!(
+                "no surface: all samples are on one side of the iso value {iso}, so the mesh is empty; they run from {} to {}: \
+                 set iso to a value between",
+                Words(low.into()),
+                Words(high.into())
+            ),
+            // A closed border would have closed it.
+            Some(_) => format!(
+                "no surface: samples are on both sides of the iso value {iso}, but none is drawn at an open border, so the mesh is \
+                 empty; border=closed closes it"
+            ),
         }
     }
-    Ok(range)
 }
 
 #[cfg(test)]
@@ -196,5 +199,25 @@ mod tests {
         assert_eq!(level.crossing(0.0, f32::INFINITY), 0.5);
         assert_eq!(level.crossing(f32::NAN, 0.0), 0.5);
         assert!(level.crossing(f32::MIN, f32::MAX) == 0.5);
+    }
+
+    #[test]
+    fn an_empty_surface_is_told_with_what_gives_it_triangles() {
+        let level = Level { iso: 1e9, inside: Inside::Above };
+        for (iso, range, words) in [
+            (
+                1e9,
+                Some([0.0, 255.0]),
+                "one side of the iso value 1000000000, so the mesh is empty; they run from 0 to 255",
+            ),
+            (255.0, Some([0.0, 255.0]), "one side of the iso value 255,"),
+            (0.0, Some([1.0, 2.0]), "one side of the iso value 0,"),
+            (1.5, Some([1.0, 2.0]), "border=closed"),
+            (0.0, Some([3.0; 2]), "all samples are 3,"),
+            (0.0, None, "no sample is finite"),
+        ] {
+            let told = Level { iso, ..level }.empty_words(range);
+            assert!(told.contains(words), "{told}");
+        }
     }
 }

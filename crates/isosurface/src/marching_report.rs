@@ -2,10 +2,11 @@
 
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ConvertError, Deviation, Exec, Report};
-use shapeloom_mesh::{Blend, Column, Domain, MeshError, NORMAL, TransformRule, TriMesh, Values};
+use shapeloom_mesh::{Domain, MeshError, TriMesh};
 
 use crate::lattice_bits::LatticeBits;
 use crate::marching::Surface;
+use crate::result::{cell_bound, normal_column};
 use crate::{IsoWords, Level, Slabs};
 
 /// The report on a surface.
@@ -20,7 +21,7 @@ pub(crate) fn told<S: Slabs + ?Sized>(
 ) -> Result<Report, ConvertError> {
     let (deviation, basis) = match bits.not_finite {
         0 => {
-            let bound = slabs.lattice().cell_diagonal();
+            let bound = cell_bound(slabs.lattice());
             (Deviation::AtMost(bound), "the diagonal of a cell, against the trilinear interpolant")
         }
         _ => (Deviation::Unknown, "samples that are not finite have no interpolant"),
@@ -28,7 +29,8 @@ pub(crate) fn told<S: Slabs + ?Sized>(
     let mut report = Report::new(name, deviation, format!("{how}; {basis}"));
     report.figure("vertices", surface.positions.len() as f64);
     report.figure("triangles", surface.triangles.len() as f64);
-    report.figure("working_bytes", (bits.memory_bytes() as u64 + surface.working_bytes) as f64);
+    let working = bits.memory_bytes() as u64 + surface.working_bytes;
+    report.figure("bytes_a_sample", working as f64 / slabs.lattice().samples() as f64);
     level.tell(slabs, how, bits.not_finite, surface.triangles.len() as u64, &mut report, exec)?;
     Ok(report)
 }
@@ -39,9 +41,7 @@ pub(crate) fn finish(surface: Surface) -> Result<TriMesh, MeshError> {
     let positions = surface.positions.into_iter().map(DVec3::from_array).collect();
     let mut mesh = TriMesh::try_new(positions, surface.triangles)?;
     if let Some(normals) = surface.normals {
-        let column = Column::try_new(NORMAL, 3, Values::F64(normals.into_flattened()))?;
-        let column = column.with_blend(Blend::Direction).with_transform(TransformRule::Normal);
-        mesh.insert_attribute(Domain::Vertex, column)?;
+        mesh.insert_attribute(Domain::Vertex, normal_column(normals)?)?;
     }
     Ok(mesh)
 }

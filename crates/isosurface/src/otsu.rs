@@ -2,7 +2,7 @@
 
 use shapeloom_core::{ConvertError, Exec};
 
-use crate::Slabs;
+use crate::{Slabs, sample_range};
 
 /// A threshold between two classes of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,25 +18,17 @@ const BINS: usize = 1024;
 
 /// The threshold that parts the finite samples into two classes of largest variance between them (Otsu 1979), on a histogram of 1024
 /// bins between the smallest and the largest. Where whole bins are empty between the classes it lies in their middle. Samples that
-/// are all equal have their value as threshold. Cost: two passes.
+/// are all equal have their value as threshold, and 0 is that of samples of which none is finite. Cost: two passes.
 ///
 /// # Errors
 /// A slab cannot be had, or the reason to stop.
 pub fn otsu_threshold<S: Slabs + ?Sized>(slabs: &S, exec: &Exec) -> Result<Otsu, ConvertError> {
     let mut buffer = Vec::new();
     let slab_count = slabs.lattice().dimensions()[2];
-    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-    for k in 0..slab_count {
-        exec.check()?;
-        for &sample in slabs.slab(k, &mut buffer)?.iter().filter(|sample| sample.is_finite()) {
-            low = low.min(sample);
-            high = high.max(sample);
-        }
+    let [low, high] = sample_range(slabs, exec)?.finite.unwrap_or([0.0; 2]).map(f64::from);
+    if low == high {
+        return Ok(Otsu { threshold: low, separability: 0.0 });
     }
-    if low >= high {
-        return Ok(Otsu { threshold: f64::from(if low == high { low } else { 0.0 }), separability: 0.0 });
-    }
-    let (low, high) = (f64::from(low), f64::from(high));
     let mut counts = vec![0u64; BINS];
     // Halved, so that the range of single precision does not overflow.
     let scale = (BINS - 1) as f64 / (high * 0.5 - low * 0.5);

@@ -46,6 +46,7 @@ pub(crate) fn cell_bound(lattice: &Lattice) -> f64 {
     lattice.cell_diagonal() * (1.0 + 1e-12) + 16.0 * f64::EPSILON * farthest
 }
 
+/// Unit normals of vertices as a column, in place: three numbers are a vector.
 pub(crate) fn normal_column(normals: Vec<[f64; 3]>) -> Result<Column, MeshError> {
     let column = Column::try_new(NORMAL, 3, Values::F64(normals.into_flattened()))?;
     Ok(column.with_blend(Blend::Direction).with_transform(TransformRule::Normal))

@@ -33,5 +33,5 @@ pub use sample_field::sample_field;
 pub use samples::Samples;
 pub use shapeloom_isosurface as isosurface;
 pub use sparse_bricks::SparseBricks;
-pub use voxel_grid::{Quantity, SampleRange, VoxelGrid};
+pub use voxel_grid::{Quantity, VoxelGrid};
 pub use voxelize::{CellRule, VoxelizeMesh, VoxelizeMode};

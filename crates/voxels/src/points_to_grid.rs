@@ -300,6 +300,7 @@ mod tests {
     use super::*;
     use crate::fixtures::Dice;
     use shapeloom_core::{Category, Threads};
+    use shapeloom_isosurface::{SampleRange, sample_range};
 
     fn cloud(count: usize) -> PointCloud {
         let mut dice = Dice(3);
@@ -358,17 +359,21 @@ mod tests {
         assert!((made.report.find("kernel_peak").unwrap() - 21.0 / (2.0 * PI)).abs() < 1e-12);
     }
 
+    fn range(grid: &VoxelGrid) -> SampleRange {
+        sample_range(grid, &Exec::default()).unwrap()
+    }
+
     #[test]
     fn full_cells_and_points_outside_are_told() {
         let many = PointCloud::new(vec![DVec3::ONE; 70_000]);
         let method = PointsToGrid { weight: PointWeight::Count, ..PointsToGrid::new() };
         let made = method.convert(&many).unwrap();
-        assert_eq!(made.value.range().finite, Some([0.0, 65535.0]));
+        assert_eq!(range(&made.value).finite, Some([0.0, 65535.0]));
         assert_eq!(made.report.findings.iter().map(|finding| finding.count).sum::<u64>(), 70_000 - 65_535);
         let lattice = Lattice::along_axes([3; 3], DVec3::ZERO, DVec3::splat(0.1)).unwrap();
         for weight in [PointWeight::Count, PointWeight::Kernel] {
             let made = PointsToGrid { weight, ..PointsToGrid::new() }.onto(&many, lattice, &Exec::default()).unwrap();
-            assert_eq!(made.value.range().finite, Some([0.0, 0.0]));
+            assert_eq!(range(&made.value).finite, Some([0.0, 0.0]));
             assert_eq!(made.report.findings.iter().next().unwrap().code, "W-points-outside");
         }
     }
@@ -385,8 +390,8 @@ mod tests {
             assert_eq!(method.convert(&small).unwrap_err().category(), Category::OverLimit);
             let fine = PointsToGrid { resolution: 100_000, ..method.clone() };
             assert_eq!(fine.convert(&cloud(10)).unwrap_err().category(), Category::OverLimit);
-            assert_eq!(method.convert(&PointCloud::default()).unwrap().value.range().finite, Some([0.0, 0.0]));
-            assert_eq!(method.convert(&PointCloud::new(vec![DVec3::ONE])).unwrap().value.range().not_finite, 0);
+            assert_eq!(range(&method.convert(&PointCloud::default()).unwrap().value).finite, Some([0.0, 0.0]));
+            assert_eq!(range(&method.convert(&PointCloud::new(vec![DVec3::ONE])).unwrap().value).not_finite, 0);
         }
     }
 

@@ -45,15 +45,6 @@ impl Quantity {
     }
 }
 
-/// From where to where samples run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampleRange {
-    /// The smallest and the largest finite sample; none if there is none.
-    pub finite: Option<[f32; 2]>,
-    /// How many samples are NaN or infinite.
-    pub not_finite: u64,
-}
-
 /// A dense grid of samples on a lattice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VoxelGrid {
@@ -116,20 +107,6 @@ impl VoxelGrid {
             "{coordinates:?} is outside of {dimensions:?}"
         );
         self.samples.get(self.lattice.index(coordinates))
-    }
-
-    /// From where to where the samples run, and how many are NaN or infinite.
-    pub fn range(&self) -> SampleRange {
-        let mut range = SampleRange { finite: None, not_finite: 0 };
-        for sample in (0..self.lattice.samples()).map(|at| self.samples.get(at)) {
-            if sample.is_finite() {
-                let [low, high] = range.finite.unwrap_or([sample; 2]);
-                range.finite = Some([low.min(sample), high.max(sample)]);
-            } else {
-                range.not_finite += 1;
-            }
-        }
-        range
     }
 
     /// The smallest box around all samples, full or empty.

@@ -55,6 +55,7 @@ impl Stage {
         }
         let exec = session.exec();
         let conversion = convert_shape(&drawable, job, &exec)?;
+        conversion.steps.iter().for_each(|step| session.say_findings(&step.report.findings));
         let (scene, memory) = scene_of_shape(&conversion.shape, &exec)?;
         let bounds = scene.bounds();
         if bounds.is_empty() {

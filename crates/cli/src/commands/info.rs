@@ -7,6 +7,7 @@ use shapeloom_core::{Diagnostic, Exec, Findings, Place, Severity};
 use shapeloom_judge::{JudgeError, MeshRef, NotConvex, PolygonReport};
 use shapeloom_mesh::{Attributes, Domain, MeshAttributes, Polyline};
 use shapeloom_shape::{Geometry, Kind, Part, Shape};
+use shapeloom_voxels::isosurface::sample_range;
 
 use crate::account;
 use crate::arguments::InfoArguments;
@@ -216,7 +217,7 @@ impl Totals {
                 object.insert("spacing".into(), json!(grid.lattice().spacing().to_array()));
                 object.insert("sample_type".into(), json!(grid.samples().name()));
                 object.insert("quantity".into(), json!(grid.quantity().name()));
-                let range = grid.range();
+                let range = sample_range(grid, exec)?;
                 if let Some([low, high]) = range.finite {
                     object.insert("lowest".into(), account::number(f64::from(low)));
                     object.insert("highest".into(), account::number(f64::from(high)));

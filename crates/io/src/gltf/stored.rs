@@ -60,16 +60,19 @@ pub(super) fn store(builder: &mut Builder<'_>, index: usize, part: &Part) -> Res
     let geometry = placed_part(builder.format, index, &local)?;
     let points = points_of(&geometry).unwrap_or(&[]);
     let (mode, least, too_small) = match &*geometry {
-        Geometry::TriMesh(mesh) => (TRIANGLES, 1, mesh.triangles().is_empty()),
-        Geometry::Polyline(line) if line.is_closed() => (LINE_LOOP, 2, points.len() < 2),
-        Geometry::Polyline(_) => (LINE_STRIP, 2, points.len() < 2),
-        Geometry::GeometricGraph(graph) => (LINES, 1, graph.edges().is_empty()),
-        _ => (POINTS, 1, points.is_empty()),
+        Geometry::TriMesh(mesh) => (TRIANGLES, "one triangle", mesh.triangles().is_empty()),
+        Geometry::Polyline(line) if line.is_closed() => (LINE_LOOP, "two points", points.len() < 2),
+        Geometry::Polyline(_) => (LINE_STRIP, "two points", points.len() < 2),
+        Geometry::GeometricGraph(graph) => (LINES, "one edge", graph.edges().is_empty()),
+        _ => (POINTS, "one point", points.is_empty()),
     };
     if too_small {
         let kind = geometry.kind();
-        let what = format!("{} points of the {kind} of part {index}", points.len());
-        let why = format!("a glTF primitive needs at least {least} element of its own; the node is kept");
+        let what = match points.len() {
+            0 => format!("the {kind} of part {index}, which is empty"),
+            count => format!("{count} points of the {kind} of part {index}"),
+        };
+        let why = format!("glTF holds none of less than {least}; the node of the part is kept");
         builder.losses.push(what, why);
         return Ok(None);
     }

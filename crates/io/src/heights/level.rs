@@ -5,6 +5,7 @@ use shapeloom_core::{Affine, Exec};
 use shapeloom_mesh::HeightField;
 use shapeloom_shape::{Geometry, Shape, UpAxis};
 
+use crate::placed::only_part;
 use crate::{Format, WriteError};
 
 /// The one height field of a shape, seen from above.
@@ -24,14 +25,7 @@ impl<'a> Level<'a> {
     /// # Errors
     /// A shape of no part or several, a field that is turned or sheared, or places that are not finite.
     pub(crate) fn try_new(shape: &'a Shape, format: &Format) -> Result<Self, WriteError> {
-        let part = match shape.parts.as_slice() {
-            [] => return Err(WriteError::Empty { format: format.id }),
-            [part] => part,
-            several => {
-                let found = several.len() as u64;
-                return Err(WriteError::TooLarge { format: format.id, what: "height fields", found, max: 1 });
-            }
-        };
+        let part = only_part(shape, format, "height fields")?;
         let Geometry::HeightField(field) = &*part.geometry else {
             let kind = part.geometry.kind();
             return Err(WriteError::Unsupported { format: format.id, part: 0, kind, holds: format.kinds });

@@ -12,7 +12,7 @@ mod scale;
 pub(crate) use field::{HOLE_ADVICE, NorthFirst, check_size, room};
 pub(crate) use level::Level;
 pub(crate) use pixels::{Channels, Pixels};
-pub(crate) use scale::{DEGREES, guess_spacing, no_height, part_of, picture_scale};
+pub(crate) use scale::{DEGREES, guess_spacing, no_height, no_voxel_size, part_of, picture_scale};
 
 use shapeloom_core::Options;
 use shapeloom_mesh::HeightField;

@@ -2,7 +2,7 @@
 
 use shapeloom_core::{Category, Findings, Place, Severity, Words};
 
-use crate::{Fault, ReadContext};
+use crate::{Fault, ReadContext, ReadOptions};
 
 /// What a degree or second of arc means for the proportions of a field.
 pub(crate) const DEGREES: &str = "heights are of another unit than the places, so that mountains look like needles or \
@@ -58,6 +58,23 @@ pub(crate) fn no_height(context: &ReadContext, what: &str) -> Result<(), Box<Fau
     Err(Fault::new("E-heights-option", Place::Whole, found, "none: the samples are heights")
         .category(Category::Usage)
         .advice("multiply heights with --set exaggeration=..., or leave the option out"))
+}
+
+/// Refuses the distances of a stack of slices where a picture is a height field.
+///
+/// # Errors
+/// They were given.
+pub(crate) fn no_voxel_size(context: &ReadContext) -> Result<(), Box<Fault>> {
+    let given = &context.options.voxel_size;
+    if *given == ReadOptions::new().voxel_size {
+        return Ok(());
+    }
+    let found = format!("the option voxel_size = {given} without stack = true");
+    Err(Fault::new("E-heights-option", Place::Whole, found, "none: the picture is a height field")
+        .category(Category::Usage)
+        .advice(
+            "say how far heights are apart with --set spacing=..., or read slices of a volume with --set stack=true",
+        ))
 }
 
 /// A sample as a part of the largest one, of a range of heights.

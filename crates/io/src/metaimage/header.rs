@@ -156,8 +156,14 @@ impl<'a> Header<'a> {
     pub(super) fn require(&self, name: &str) -> Result<&Entry<'a>, Box<Fault>> {
         self.find(name).ok_or_else(|| {
             let place = Place::Byte(self.end as u64);
-            Fault::new("E-metaimage-header", place, "the end of the header", format!("the key {name}"))
-                .advice(format!("put a line \"{name} = ...\" into the header, before ElementDataFile"))
+            let advice = match name {
+                "ElementDataFile" => {
+                    "end the header with a line \"ElementDataFile = LOCAL\", or with the name of the file of samples"
+                        .to_owned()
+                }
+                _ => format!("put a line \"{name} = ...\" into the header, before ElementDataFile"),
+            };
+            Fault::new("E-metaimage-header", place, "the end of the header", format!("the key {name}")).advice(advice)
         })
     }
 }

@@ -56,10 +56,17 @@ const NAMES: [(&str, &[&str]); 21] = [
     ("block size", &[]),
 ];
 
+/// Whether a value of `data file` says that names follow.
+pub(super) fn is_list(value: &[u8]) -> bool {
+    value.strip_prefix(b"LIST").is_some_and(|rest| rest.first().is_none_or(u8::is_ascii_whitespace))
+}
+
 /// The fields of a header, its comments, and where it ends.
 #[derive(Debug, Default)]
 pub(super) struct Fields<'a> {
     all: Vec<Field<'a>>,
+    /// The names of files that follow `data file: LIST` to the end.
+    pub(super) listed: Vec<&'a [u8]>,
     /// What the file says of the quantity of its samples.
     pub(super) quantity: &'a [u8],
     pub(super) comments: Vec<String>,
@@ -135,7 +142,12 @@ impl<'a> Fields<'a> {
                 }
                 continue;
             }
-            fields.take(name, value.trim_ascii(), line, context, memory, findings)?;
+            let value = value.trim_ascii();
+            if fields.take(name, value, line, context, memory, findings)? == Some("data file") && is_list(value) {
+                fields.list(&mut scan, context, memory)?;
+                fields.end = text.len();
+                return Ok(fields);
+            }
         }
     }
 
@@ -147,7 +159,7 @@ impl<'a> Fields<'a> {
         context: &ReadContext,
         memory: &mut Memory<'_>,
         findings: &mut Findings,
-    ) -> Result<(), ReadError> {
+    ) -> Result<Option<&'static str>, ReadError> {
         let _ = context;
         let squeezed: Vec<u8> = name.iter().take(64).filter(|byte| !byte.is_ascii_whitespace()).copied().collect();
         let same = |word: &str| {
@@ -162,7 +174,7 @@ impl<'a> Fields<'a> {
             let text = lossy(&field, Place::Byte(line), findings).into_owned();
             make_room(memory, &mut self.comments, 1)?;
             self.comments.push(text);
-            return Ok(());
+            return Ok(None);
         };
         if self.find(name).is_some() {
             let found = format!("{name} a second time");
@@ -174,7 +186,27 @@ impl<'a> Fields<'a> {
             memory.take(words.len() + 64, 4)?;
             self.comments.push(format!("{SPACE}{words}"));
         }
-        Ok(())
+        Ok(Some(name))
+    }
+
+    /// The names of files, one a line, to the end.
+    fn list(
+        &mut self,
+        scan: &mut Scanner<'a>,
+        context: &ReadContext,
+        memory: &mut Memory<'_>,
+    ) -> Result<(), ReadError> {
+        loop {
+            context.exec.check()?;
+            let name = scan.rest_of_line().trim_ascii();
+            if !name.is_empty() {
+                make_room(memory, &mut self.listed, 1)?;
+                self.listed.push(name);
+            }
+            if !scan.next_line() {
+                return Ok(());
+            }
+        }
     }
 
     pub(super) fn find(&self, name: &str) -> Option<&Field<'a>> {

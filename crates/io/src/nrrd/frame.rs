@@ -14,6 +14,8 @@ pub(super) struct Axes {
     pub(super) sizes: [u64; 3],
     /// Which of the file's axes they are.
     which: [usize; 3],
+    /// The sizes of all.
+    pub(super) all_sizes: Vec<u64>,
     all: usize,
 }
 
@@ -74,7 +76,7 @@ impl Axes {
             let fault = dimension.fault("E-nrrd-dimension", found, "three axes of space");
             return Err(fault.category(Category::Unsupported));
         };
-        Ok(Self { sizes: which.map(|axis| sizes[axis]), which, all: count })
+        Ok(Self { sizes: which.map(|axis| sizes[axis]), which, all_sizes: sizes, all: count })
     }
 
     /// A number for each axis, where the file has them; not a number for axes without.

@@ -1,12 +1,14 @@
-//! NRRD: a header in text and samples in raw bytes, gzip or text, in one file (`.nrrd`) or beside it (`.nhdr`): read and
-//! written.
+//! NRRD: a header in text and samples in raw bytes, gzip or text, in one file (`.nrrd`) or in files beside it (`.nhdr`),
+//! of which it names one, lists several or gives the pattern: read, and written in one file.
 //!
 //! The first axis is the fastest. Directions are `space directions`, else `spacings`; the first sample is at `space origin`,
 //! else at `axis mins`. The name of the space, such as `left-posterior-superior`, is a comment of the shape and written
 //! again; coordinates stay as they are in it. The key `quantity` says whether samples are occupancy, density or a signed
 //! distance, in files of this project.
 
+mod data;
 mod fields;
+mod files;
 mod frame;
 mod read;
 #[cfg(test)]

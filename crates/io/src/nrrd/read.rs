@@ -1,14 +1,17 @@
 //! Reading NRRD.
 
-use shapeloom_core::{Category, Findings, Place};
+use std::cell::Cell;
 
+use shapeloom_core::{Category, Findings, Place};
+use shapeloom_voxels::isosurface::Lattice;
+
+use super::data::{Data, Encoding};
 use super::fields::Fields;
+use super::files::DataFiles;
 use super::frame::{Axes, units};
 use crate::memory::Memory;
-use crate::text::{Scanner, end_place, in_lines, line_place, parse_count, quoted};
-use crate::volumes::{
-    Coding, MOST_FROM_A_BYTE, Packing, Payload, Room, Scalar, grid_shape, open_beside, quantity_of, text_samples,
-};
+use crate::text::{end_place, in_lines, line_place, quoted};
+use crate::volumes::{Intake, Payload, Room, Scalar, grid_shape, quantity_of};
 use crate::{Fault, ReadContext, ReadError, ReadShape};
 
 pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, ReadError> {
@@ -26,14 +29,6 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     findings.extend(read.findings);
     let findings = findings.with_places(|place| if in_header(&place) { line_place(input, place) } else { place });
     Ok(ReadShape { findings, ..read })
-}
-
-/// How samples are written.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Encoding {
-    Raw,
-    Gzip,
-    Text,
 }
 
 fn scalar_of(word: &[u8]) -> Option<Scalar> {
@@ -95,71 +90,43 @@ fn volume(
         }
     };
     let frame = axes.frame(fields)?;
-    let (lines, bytes) = (skip(fields, "line skip")?, skip(fields, "byte skip")?);
+    let data = Data::new(encoding, scalar, big, fields)?;
     let sizes = fields.require("sizes")?;
-    let unpacked = axes.sizes.iter().fold(scalar.size() as u64, |product, size| product.saturating_mul(*size));
-    let mut payload = match fields.find("data file") {
-        Some(field) => {
-            let name = std::str::from_utf8(field.value).unwrap_or("");
-            if name == "LIST" || name.starts_with("LIST ") || name.contains('%') {
-                let fault = field.fault("E-nrrd-feature", quoted(field.value), "the name of one file");
-                return Err(fault.category(Category::Unsupported).into());
-            }
-            // Of packed samples, of lines and of what comes before the last ones nothing is known.
-            let exact = encoding == Encoding::Raw && lines == Some(0);
-            let wanted = if exact { bytes.map_or(u64::MAX, |bytes| unpacked.saturating_add(bytes)) } else { u64::MAX };
-            open_beside(name, wanted, field.place(), "data file", context, memory)?
-        }
-        None => {
-            let Some(data) = fields.data else {
-                let expected = "the blank line before the samples, or the field data file";
-                let fault = Fault::new("E-nrrd-header", end_place(input), "the end of the file", expected);
-                return Err(fault.advice("put a blank line between the header and the samples").into());
-            };
-            Payload::attached(input, data)
-        }
-    };
-    let Some(lines) = lines else {
-        return Err(negative(fields, "line skip").into());
-    };
-    payload.skip_lines(lines, context)?;
-    let skip = match (bytes, encoding) {
-        (Some(bytes), _) => bytes,
-        // The last bytes of the file.
-        (None, Encoding::Raw) => payload.len().saturating_sub(unpacked),
-        (None, _) => return Err(negative(fields, "byte skip").into()),
-    };
-    let room = match encoding {
-        Encoding::Raw => Room {
-            bytes: payload.len().saturating_sub(skip),
-            most_from_a_byte: 1,
-            size: scalar.size() as u64,
-            stored_size: scalar.stored_size() as u64,
-        },
-        Encoding::Gzip => Room {
-            bytes: payload.len(),
-            most_from_a_byte: MOST_FROM_A_BYTE,
-            size: scalar.size() as u64,
-            stored_size: scalar.stored_size() as u64,
-        },
-        // A digit and a blank each, but for the last.
-        Encoding::Text => {
-            Room { bytes: payload.len() + 1, most_from_a_byte: 1, size: 2, stored_size: scalar.stored_size() as u64 }
-        }
-    };
     let count = axes.sizes.iter().fold(1u64, |product, size| product.saturating_mul(*size));
-    let dimensions = room.check(axes.sizes, sizes.place(), "sizes", &payload, context)?;
-    let lattice = frame.lattice(dimensions, frame_place(fields))?;
-    let samples = match encoding {
-        Encoding::Text => {
-            let text = &payload.bytes[..];
-            let mut scan = Scanner::new(text, usize::try_from(skip).unwrap_or(usize::MAX));
-            let samples = text_samples(&mut scan, text, count, scalar, context, memory, findings);
-            samples.map_err(|error| payload.moved(error))?
+    let lattice = |room: &Room, payload: &Payload<'_>| -> Result<Lattice, Box<Fault>> {
+        let dimensions = room.check(axes.sizes, sizes.place(), "sizes", payload, context)?;
+        frame.lattice(dimensions, frame_place(fields))
+    };
+    let files = match fields.find("data file") {
+        Some(field) => Some((field, DataFiles::read(field, fields, &axes)?)),
+        None => None,
+    };
+    let (lattice, samples) = match &files {
+        Some((field, files)) if files.are_several() => {
+            let found = Cell::new(None);
+            let check = |room: &Room, payload: &Payload<'_>| {
+                found.set(Some(lattice(room, payload)?));
+                Ok(())
+            };
+            let samples = data.samples_of_files((field, files), count, check, context, memory, findings)?;
+            let lattice = found.get().ok_or_else(|| field.fault("E-nrrd-count", "no file", "one at least"))?;
+            (lattice, samples)
         }
         _ => {
-            let packing = if encoding == Encoding::Gzip { Packing::Gzip } else { Packing::Plain };
-            payload.samples(count, &Coding { packing, scalar, big, skip }, context, memory, findings)?
+            let mut payload = match (&files, fields.data) {
+                (Some((field, files)), _) => data.open_one(files, count, field, context, memory)?,
+                (None, Some(data)) => Payload::attached(input, data),
+                (None, None) => {
+                    let expected = "the blank line before the samples, or the field data file";
+                    let fault = Fault::new("E-nrrd-header", end_place(input), "the end of the file", expected);
+                    return Err(fault.advice("put a blank line between the header and the samples").into());
+                }
+            };
+            let (skip, room) = data.room(&mut payload, count, context)?;
+            let lattice = lattice(&room, &payload)?;
+            let mut intake = Intake::with_room(count, scalar, memory)?;
+            data.samples(&payload, &mut intake, (count, skip), context, memory, findings)?;
+            (lattice, intake.finish(findings))
         }
     };
     let mut shape = grid_shape(lattice, samples, quantity_of(fields.quantity), findings)?;
@@ -171,19 +138,4 @@ fn volume(
 fn frame_place(fields: &Fields<'_>) -> Place {
     let said = ["space directions", "spacings", "space origin", "sizes"].into_iter().find_map(|name| fields.find(name));
     said.map_or(Place::Whole, |field| field.place())
-}
-
-/// How many lines or bytes are passed over; none for -1.
-fn skip(fields: &Fields<'_>, name: &str) -> Result<Option<u64>, Box<Fault>> {
-    let Some(field) = fields.find(name) else { return Ok(Some(0)) };
-    if field.value == b"-1" {
-        return Ok(None);
-    }
-    let wrong = |_| field.fault("E-nrrd-count", quoted(field.value), "a whole number in digits alone");
-    parse_count(field.value).map(Some).map_err(wrong)
-}
-
-fn negative(fields: &Fields<'_>, name: &str) -> Box<Fault> {
-    let place = fields.find(name).map_or(Place::Whole, |field| field.place());
-    Fault::new("E-nrrd-count", place, "\"-1\"", "a number from 0: only raw samples may be the last bytes").within(name)
 }

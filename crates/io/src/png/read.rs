@@ -9,8 +9,8 @@ use shapeloom_shape::Units;
 
 use super::chunks::Chunks;
 use crate::heights::{
-    Channels, NorthFirst, Pixels, check_options, check_size, guess_spacing, no_height, part_of, picture_scale, room,
-    shape_of,
+    Channels, NorthFirst, Pixels, check_options, check_size, guess_spacing, no_height, no_voxel_size, part_of,
+    picture_scale, room, shape_of,
 };
 use crate::memory::Memory;
 use crate::volumes::{Plane, Scalar, read_stack};
@@ -24,6 +24,7 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     if context.options.stack {
         return read_stack(input, context, plane);
     }
+    no_voxel_size(context)?;
     let mut findings = Findings::default();
     let mut memory = Memory::new(&context.exec);
     let (chunks, (columns, rows)) = sized(input, context, &mut findings)?;

@@ -21,13 +21,17 @@ fn parts(text: &str) -> Option<[&str; 3]> {
     parts.next().is_none().then_some(three)
 }
 
-fn dimensions(options: &ReadOptions) -> Result<[u64; 3], Box<Fault>> {
+fn dimensions(options: &ReadOptions, bytes: usize) -> Result<[u64; 3], Box<Fault>> {
     let text = &options.dimensions;
-    let wrong = || {
-        usage("dimensions", text, "three whole numbers, such as 256x256x128").advice(
-            "say how many samples there are with --set dimensions=XxYxZ, and of which type with --set scalar=...",
-        )
-    };
+    let advice = "say how many samples there are with --set dimensions=XxYxZ, such as 256x256x128, and of which type with \
+                  --set scalar=TYPE where it is not u8";
+    if text.is_empty() {
+        let found = format!("{bytes} bytes without a header, and no option dimensions");
+        let expected = "the option dimensions: how many samples there are along x, y and z";
+        let fault = Fault::new("E-volume-option", Place::Whole, found, expected);
+        return Err(fault.category(Category::Usage).advice(advice));
+    }
+    let wrong = || usage("dimensions", text, "three whole numbers, such as 256x256x128").advice(advice);
     let mut sizes = [0; 3];
     for (size, part) in sizes.iter_mut().zip(parts(text).ok_or_else(wrong)?) {
         *size = parse_count(part.as_bytes()).map_err(|_| wrong())?;
@@ -70,7 +74,7 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     let mut findings = Findings::default();
     let mut memory = Memory::new(&context.exec);
     let options = &context.options;
-    let sizes = dimensions(options)?;
+    let sizes = dimensions(options, input.len())?;
     let frame = Frame::turned(DVec3::ZERO, [DVec3::X, DVec3::Y, DVec3::Z], voxel_size(options)?);
     let scalar = scalar_of(options.scalar);
     let payload = Payload::attached(input, 0);
@@ -80,7 +84,11 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
         size: scalar.size() as u64,
         stored_size: scalar.stored_size() as u64,
     };
-    let dimensions = room.check(sizes, Place::Whole, "option dimensions", &payload, context)?;
+    let dimensions = room.check(sizes, Place::Whole, "option dimensions", &payload, context).map_err(|fault| {
+        let ours = ["E-volume-claim", "E-volume-truncated"].contains(&fault.code);
+        let advice = "mend the options dimensions, scalar and skip, or get a complete copy of the file";
+        if ours { fault.advice(advice) } else { fault }
+    })?;
     let lattice = frame.lattice(dimensions, Place::Whole)?;
     let coding = Coding {
         packing: Packing::Plain,

@@ -12,8 +12,8 @@ use super::pieces::Pieces;
 use super::source::{Source, Stopped};
 use super::words::{color_words, unsupported_words};
 use crate::heights::{
-    Channels, DEGREES, NorthFirst, Pixels, check_options, check_size, guess_spacing, no_height, part_of, picture_scale,
-    room, shape_of,
+    Channels, DEGREES, NorthFirst, Pixels, check_options, check_size, guess_spacing, no_height, no_voxel_size, part_of,
+    picture_scale, room, shape_of,
 };
 use crate::memory::Memory;
 use crate::volumes::{Plane, Scalar, read_stack};
@@ -29,6 +29,7 @@ pub(super) fn read(input: &[u8], context: &ReadContext) -> Result<ReadShape, Rea
     if context.options.stack {
         return read_stack(input, context, planes);
     }
+    no_voxel_size(context)?;
     let mut findings = Findings::default();
     let mut memory = Memory::new(&context.exec);
     let stopped = Stopped::default();

@@ -15,16 +15,18 @@ mod stack;
 #[cfg(test)]
 mod tests;
 mod text;
+mod zlib;
 
 pub(crate) use base64::decode_base64;
 pub(crate) use grid::{Frame, Room, check_size, check_spacing, grid_shape, quantity_of};
 pub(crate) use intake::Intake;
 pub(crate) use neighbor::open_beside;
 pub(crate) use one_grid::{OneGrid, plain, rounding_words, three};
-pub(crate) use payload::{Coding, MOST_FROM_A_BYTE, Packing, Payload};
+pub(crate) use payload::{Coding, MOST_FROM_A_BYTE, NO_CHECKSUM, Packing, Payload};
 pub(crate) use scalar::Scalar;
 pub(crate) use stack::{Plane, read_stack};
-pub(crate) use text::text_samples;
+pub(crate) use text::{text_samples, text_samples_into};
+pub(crate) use zlib::ZlibStream;
 
 /// Numbers with something between.
 pub(crate) fn joined(numbers: &[u64], between: &str) -> String {

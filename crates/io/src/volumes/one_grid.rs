@@ -6,6 +6,7 @@ use shapeloom_shape::{Geometry, Shape};
 use shapeloom_voxels::isosurface::Lattice;
 use shapeloom_voxels::{Samples, VoxelGrid};
 
+use crate::placed::only_part;
 use crate::sink::Sink;
 use crate::{Format, WriteError};
 
@@ -19,14 +20,7 @@ impl<'a> OneGrid<'a> {
     /// # Errors
     /// A shape of no part or several, or places that are not finite.
     pub(crate) fn try_new(shape: &'a Shape, format: &Format) -> Result<Self, WriteError> {
-        let part = match shape.parts.as_slice() {
-            [] => return Err(WriteError::Empty { format: format.id }),
-            [part] => part,
-            several => {
-                let found = several.len() as u64;
-                return Err(WriteError::TooLarge { format: format.id, what: "voxel grids", found, max: 1 });
-            }
-        };
+        let part = only_part(shape, format, "voxel grids")?;
         let Geometry::VoxelGrid(grid) = &*part.geometry else {
             let kind = part.geometry.kind();
             return Err(WriteError::Unsupported { format: format.id, part: 0, kind, holds: format.kinds });

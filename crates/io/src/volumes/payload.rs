@@ -2,16 +2,20 @@
 
 use std::borrow::Cow;
 
-use flate2::bufread::{GzDecoder, ZlibDecoder};
+use flate2::bufread::GzDecoder;
 use shapeloom_core::{Findings, Place, Severity};
 use shapeloom_voxels::Samples;
 
-use super::{Intake, Scalar};
+use super::{Intake, Scalar, ZlibStream};
 use crate::memory::Memory;
 use crate::{Fault, ReadContext, ReadError};
 
 /// Deflate gives at most about 1032 bytes for one.
 pub(crate) const MOST_FROM_A_BYTE: u64 = 1032;
+
+/// What there is to say of packed samples that end within their checksum.
+pub(crate) const NO_CHECKSUM: &str =
+    "the packed data end before their checksum: all samples are there, but nothing shows that they are right";
 
 /// Where the bytes of samples are.
 pub(crate) enum Packing {
@@ -115,6 +119,23 @@ impl<'a> Payload<'a> {
         findings: &mut Findings,
     ) -> Result<Samples, ReadError> {
         let mut intake = Intake::with_room(count, coding.scalar, memory)?;
+        self.samples_into(&mut intake, count, coding, context, memory, findings)?;
+        Ok(intake.finish(findings))
+    }
+
+    /// The same after the samples that are there already.
+    ///
+    /// # Errors
+    /// As [`Payload::samples`].
+    pub(crate) fn samples_into(
+        &self,
+        intake: &mut Intake,
+        count: u64,
+        coding: &Coding,
+        context: &ReadContext,
+        memory: &mut Memory<'_>,
+        findings: &mut Findings,
+    ) -> Result<(), ReadError> {
         let size = coding.scalar.size();
         if matches!(coding.packing, Packing::Plain) {
             let wanted = coding.skip.saturating_add(count.saturating_mul(size as u64));
@@ -133,7 +154,7 @@ impl<'a> Payload<'a> {
                 let message = format!("{} bytes follow after the last sample; they were not read", self.len() - wanted);
                 findings.push("W-volume-trailing", Severity::Warning, self.place(wanted), message);
             }
-            return Ok(intake.finish(findings));
+            return Ok(());
         }
         // What inflating keeps, and a piece.
         memory.take(1, (1 << 17) + PIECE)?;
@@ -165,8 +186,7 @@ impl<'a> Payload<'a> {
             return Err(self.fault("E-volume-trailing", unpacked.position(), found, expected).into());
         }
         if unpacked.cut {
-            let message = "the packed data end before their checksum: all samples are there, but nothing shows that they are right";
-            findings.push("W-volume-truncated", Severity::Warning, self.place(self.len()), message);
+            findings.push("W-volume-truncated", Severity::Warning, self.place(self.len()), NO_CHECKSUM);
         }
         let position = unpacked.position();
         if position < self.len() {
@@ -174,7 +194,7 @@ impl<'a> Payload<'a> {
                 format!("{} bytes follow after the packed samples; they were not read", self.len() - position);
             findings.push("W-volume-trailing", Severity::Warning, self.place(position), message);
         }
-        Ok(intake.finish(findings))
+        Ok(())
     }
 
     /// Fills a buffer as far as there are bytes.
@@ -217,13 +237,13 @@ struct Unpacked<'a> {
 
 enum Decoder<'a> {
     Gzip(GzDecoder<&'a [u8]>),
-    Zlib(ZlibDecoder<&'a [u8]>),
+    Zlib(ZlibStream<'a>),
 }
 
 impl<'a> Unpacked<'a> {
     fn new(bytes: &'a [u8], packing: &Packing) -> Self {
         let decoder = match packing {
-            Packing::Zlib => Decoder::Zlib(ZlibDecoder::new(bytes)),
+            Packing::Zlib => Decoder::Zlib(ZlibStream::new(bytes)),
             Packing::Gzip | Packing::Plain => Decoder::Gzip(GzDecoder::new(bytes)),
         };
         Self { decoder, packed: bytes.len(), cut: false }
@@ -233,7 +253,7 @@ impl<'a> Unpacked<'a> {
         use std::io::Read;
         match &mut self.decoder {
             Decoder::Gzip(decoder) => decoder.read(buffer),
-            Decoder::Zlib(decoder) => decoder.read(buffer),
+            Decoder::Zlib(stream) => stream.read(buffer),
         }
     }
 
@@ -252,7 +272,7 @@ impl<'a> Unpacked<'a> {
     fn position(&self) -> u64 {
         let left = match &self.decoder {
             Decoder::Gzip(decoder) => decoder.get_ref().len(),
-            Decoder::Zlib(decoder) => decoder.get_ref().len(),
+            Decoder::Zlib(stream) => stream.rest().len(),
         };
         (self.packed - left) as u64
     }

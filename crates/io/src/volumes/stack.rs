@@ -1,14 +1,14 @@
 //! Pictures that are the slices of a volume.
 
 use shapeloom_core::glam::DVec3;
-use shapeloom_core::{Category, Findings, Place, Severity};
+use shapeloom_core::{Category, Findings, Options, Place, Severity};
 use shapeloom_voxels::Quantity;
 
 use super::neighbor::open;
 use super::{Frame, Intake, Scalar, grid_shape};
 use crate::memory::Memory;
 use crate::text::quoted;
-use crate::{Fault, ReadContext, ReadError, ReadShape, SiblingError, SiblingName};
+use crate::{Fault, ReadContext, ReadError, ReadOptions, ReadShape, SiblingError, SiblingName};
 
 /// The samples of a picture, row by row, the upper one first.
 pub(crate) struct Plane {
@@ -32,6 +32,7 @@ pub(crate) fn read_stack(input: &[u8], context: &ReadContext, planes: Planes) ->
     let mut stack = Stack { size: None, slices: 0, intake: None };
     let mut memory = Memory::new(&context.exec);
     let spacing = crate::raw::voxel_size(&context.options)?;
+    no_heights(&context.options)?;
     planes(input, context, &mut findings, &mut |plane| stack.add(&plane, &context.name, context, &mut memory))?;
     if stack.slices == 1 {
         let name = Numbered::of(&context.name)?;
@@ -77,6 +78,27 @@ pub(crate) fn read_stack(input: &[u8], context: &ReadContext, planes: Planes) ->
     let samples = intake.finish(&mut findings);
     let shape = grid_shape(lattice, samples, Quantity::Density, &mut findings)?;
     Ok(ReadShape { findings, ..ReadShape::new(shape) })
+}
+
+/// Refuses options that say how a picture is a height field.
+///
+/// # Errors
+/// One of them was given.
+fn no_heights(options: &ReadOptions) -> Result<(), Box<Fault>> {
+    let usual = ReadOptions::new();
+    for name in ["encoding", "height", "spacing", "exaggeration"] {
+        if let Ok(given) = options.get(name)
+            && usual.get(name) != Ok(given.clone())
+        {
+            let found = format!("the option {name} = {given} with stack = true");
+            let fault =
+                Fault::new("E-volume-option", Place::Whole, found, "none: the pictures are slices, not heights");
+            let advice = "leave it out, or leave stack out for a height field; --set voxel_size=XxYxZ says how far samples \
+                          of slices are apart";
+            return Err(fault.category(Category::Usage).advice(advice));
+        }
+    }
+    Ok(())
 }
 
 /// The slices so far.

@@ -105,6 +105,21 @@ fn packed_metaimages_say_how_many_bytes_follow() {
     assert!(String::from_utf8_lossy(&bytes[..data]).contains(&said), "{said}");
 }
 
+/// All samples are there, and that nothing shows them to be right is told.
+#[test]
+fn packed_metaimages_that_end_within_their_checksum_are_told() {
+    let lattice = Lattice::along_axes([3, 2, 1], DVec3::ZERO, DVec3::ONE).unwrap();
+    let own = VoxelGrid::try_new(lattice, Samples::U8((0..6).collect()), Quantity::Density).unwrap();
+    let (bytes, _) = written(&Shape::new(Part::new(own.clone())), "mha", true);
+    for cut in 1..=4 {
+        let read = again(&bytes[..bytes.len() - cut], "mha");
+        same_samples(grid(&read.shape), &own);
+        assert_eq!(read.findings.iter().map(|finding| finding.code).collect::<Vec<_>>(), ["W-volume-truncated"]);
+    }
+    let few = read(&bytes[..bytes.len() - 9], format_by_id("mha").unwrap(), &ReadContext::named("a")).unwrap_err();
+    assert_eq!(shapeloom_core::Diagnostic::code(&few), "E-volume-truncated");
+}
+
 /// Where a part places its grid, the file has it.
 #[test]
 fn placements_units_and_words_are_kept() {
@@ -123,6 +138,24 @@ fn placements_units_and_words_are_kept() {
             "vti" => assert_eq!(report.losses.len(), 2, "{:?}", report.losses),
             _ => assert_eq!((&read.comments[..], report.losses.len()), (&comments[..1], 2), "{:?}", report.losses),
         }
+    }
+}
+
+#[test]
+fn legacy_vtk_keeps_one_line_of_words_and_says_what_it_leaves_out() {
+    let lattice = Lattice::along_axes([2, 1, 1], DVec3::ZERO, DVec3::ONE).unwrap();
+    let own = VoxelGrid::try_new(lattice, Samples::U8(vec![1, 2]), Quantity::Density).unwrap();
+    let long = "x".repeat(256);
+    for (comments, kept, lost) in [
+        (vec![], vec![], None),
+        (vec!["one"], vec!["one"], None),
+        (vec!["one", "two"], vec!["one"], Some("comments after the first")),
+        (vec![&long[..]], vec![&long[..255]], Some("the comment beyond its first 255 bytes")),
+    ] {
+        let comments = comments.into_iter().map(str::to_owned).collect();
+        let (bytes, report) = written(&Shape { comments, ..Shape::new(Part::new(own.clone())) }, "vtk", false);
+        assert_eq!(again(&bytes, "vtk").shape.comments, kept);
+        assert_eq!(crate::test_data::whats(&report), lost.into_iter().collect::<Vec<_>>());
     }
 }
 
@@ -166,6 +199,8 @@ fn raw_samples_are_read_as_options_say() {
     }
     let without = read(&[0; 9], format_by_id("raw").unwrap(), &ReadContext::named("raw")).unwrap_err();
     assert_eq!(shapeloom_core::Diagnostic::code(&without), "E-volume-option");
+    let words = without.to_string();
+    assert!(words.contains("9 bytes without a header, and no option dimensions"), "{words}");
 }
 
 /// A slice of a run, of bytes as they are, and of both.

@@ -22,8 +22,24 @@ pub(crate) fn text_samples(
     findings: &mut Findings,
 ) -> Result<Samples, ReadError> {
     let mut intake = Intake::with_room(count, scalar, memory)?;
+    text_samples_into(&mut intake, scan, text, count, scalar, context)?;
+    Ok(intake.finish(findings))
+}
+
+/// The same after the samples that are there already, up to `count` in all.
+///
+/// # Errors
+/// As [`text_samples`].
+pub(crate) fn text_samples_into(
+    intake: &mut Intake,
+    scan: &mut Scanner<'_>,
+    text: &[u8],
+    count: u64,
+    scalar: Scalar,
+    context: &ReadContext,
+) -> Result<(), ReadError> {
     while intake.taken() < count {
-        if intake.taken() % 1024 == 0 {
+        if intake.taken().is_multiple_of(1024) {
             context.exec.check()?;
             context.exec.progress(intake.taken() as f64 / count.max(1) as f64);
         }
@@ -53,7 +69,7 @@ pub(crate) fn text_samples(
         }
         intake.number(value);
     }
-    Ok(intake.finish(findings))
+    Ok(())
 }
 
 /// The value of a word for infinity, for no number, or of a number beyond the largest one.

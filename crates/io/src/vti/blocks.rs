@@ -1,14 +1,16 @@
 //! The bytes of an array: a count of them, or compressed blocks behind a table of their sizes.
 
-use std::io::Read;
+use std::io::ErrorKind;
 
-use flate2::bufread::ZlibDecoder;
 use shapeloom_core::{Findings, Place, Severity};
 use shapeloom_voxels::Samples;
 
 use crate::memory::Memory;
-use crate::volumes::{Intake, MOST_FROM_A_BYTE, Scalar};
+use crate::volumes::{Intake, MOST_FROM_A_BYTE, NO_CHECKSUM, Scalar, ZlibStream};
 use crate::{Fault, ReadContext, ReadError};
+
+/// The bytes of a checksum.
+const CHECKSUM: usize = 4;
 
 /// How the file writes counts and numbers.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +62,7 @@ impl Stored<'_> {
         let wanted = count.saturating_mul(scalar.size() as u64);
         let mut intake = Intake::with_room(count, scalar, memory)?;
         let used = if layout.compressed {
-            self.unpack(wanted, layout, &mut intake, context, memory)?
+            self.unpack(wanted, layout, &mut intake, context, memory, findings)?
         } else {
             let said = layout.count(self.bytes);
             let said = said.ok_or_else(|| self.short("the number of bytes of the array"))?;
@@ -98,6 +100,7 @@ impl Stored<'_> {
         intake: &mut Intake,
         context: &ReadContext,
         memory: &mut Memory<'_>,
+        findings: &mut Findings,
     ) -> Result<usize, ReadError> {
         let size = layout.count_size;
         let table = |at: u64| {
@@ -119,19 +122,25 @@ impl Stored<'_> {
         // What inflating keeps, and a piece that never ends within a number.
         memory.take(1, (1 << 16) + (1 << 17))?;
         let mut piece = vec![0u8; 1 << 16];
-        let mut filled = 0;
+        let (mut filled, mut cut) = (0, 0);
         for number in 0..blocks {
             let packed = table(3 + number).and_then(|packed| usize::try_from(packed).ok());
-            let bytes = packed.and_then(|packed| self.bytes[at..].get(..packed));
+            let rest = &self.bytes[at..];
+            let bytes = packed.and_then(|packed| match rest.get(..packed) {
+                // All but a part of the last checksum may be there.
+                None if number + 1 == blocks && packed - rest.len() <= CHECKSUM => Some(rest),
+                own => own,
+            });
             let bytes = bytes.ok_or_else(|| self.short(&format!("{blocks} blocks, of which {number} are there")))?;
             at += bytes.len();
             let mut left = if number + 1 == blocks && last > 0 { last } else { block };
-            let mut decoder = ZlibDecoder::new(bytes);
+            let mut stream = ZlibStream::new(bytes);
             let broken = |found: String| {
                 let fault = self.fault("E-volume-data", found, "sound compressed data".to_owned());
                 let within = fault.within.clone().unwrap_or_default();
                 fault.within(format!("{within}, block {number}"))
             };
+            let early = |left: u64| ReadError::from(broken(format!("the end of the block, {left} bytes too early")));
             loop {
                 context.exec.check()?;
                 let most = (piece.len() - filled).min(usize::try_from(left).unwrap_or(usize::MAX));
@@ -143,8 +152,12 @@ impl Stored<'_> {
                 if left == 0 {
                     // The checksum is read with the end.
                     let mut beyond = [0u8];
-                    match decoder.read(&mut beyond) {
+                    match stream.read(&mut beyond) {
                         Ok(0) => break,
+                        Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                            cut += 1;
+                            break;
+                        }
                         Ok(_) => {
                             let found = "a block with more bytes than the table says".to_owned();
                             return Err(self.fault("E-volume-trailing", found, format!("{block} bytes")).into());
@@ -152,15 +165,19 @@ impl Stored<'_> {
                         Err(error) => return Err(broken(error.to_string()).into()),
                     }
                 }
-                match decoder.read(&mut piece[filled..filled + most]) {
-                    Ok(0) => return Err(broken(format!("the end of the block, {left} bytes too early")).into()),
+                match stream.read(&mut piece[filled..filled + most]) {
+                    Ok(0) => return Err(early(left)),
                     Ok(more) => {
                         filled += more;
                         left -= more as u64;
                     }
+                    Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Err(early(left)),
                     Err(error) => return Err(broken(error.to_string()).into()),
                 }
             }
+        }
+        if cut > 0 {
+            findings.push_many("W-volume-truncated", Severity::Warning, self.place.clone(), NO_CHECKSUM, cut);
         }
         intake.bytes(&piece[..filled], layout.big);
         Ok(at)

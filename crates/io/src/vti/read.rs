@@ -225,6 +225,11 @@ fn volume(
         let message = format!("the piece is {words} of a larger whole: the rest is in other files, and was not read");
         findings.push("W-vti-piece", shapeloom_core::Severity::Warning, Place::Byte(piece.at), message);
     }
+    if document.cut {
+        let message = "the file ends before its last tags: all samples are there, but other arrays may not be";
+        let end = Place::Byte(input.len() as u64);
+        findings.push("W-volume-truncated", shapeloom_core::Severity::Warning, end, message);
+    }
     let lattice = frame.lattice(dimensions, place)?;
     let shape = grid_shape(lattice, samples, quantity_of(name.as_bytes()), findings)?;
     Ok(ReadShape { losses, ..ReadShape::new(shape) })

@@ -137,3 +137,51 @@ fn what_is_not_read_is_named() {
         assert_eq!(found.map_or_else(|code| code, |_| ""), code, "{array}");
     }
 }
+
+/// As a gzip file that ends within its checksum is: all samples are there, which is told.
+#[test]
+fn files_that_end_after_their_samples_are_told() {
+    let data: Vec<u8> = (1..=24).collect();
+    let (table, body) = blocks(&data, false, false);
+    let file = |compressor: &str, data: &[u8], end: &str| {
+        let head = format!(
+            "<VTKFile type=\"ImageData\" {compressor}><ImageData WholeExtent=\"0 3 0 2 0 1\"><Piece><PointData>\
+             <DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" offset=\"0\"/></PointData></Piece></ImageData>\
+             <AppendedData encoding=\"raw\">_"
+        );
+        [head.as_bytes(), data, end.as_bytes()].concat()
+    };
+    let told = |bytes: &[u8]| {
+        let read = attempt(bytes)?;
+        assert!(data.iter().enumerate().all(|(at, &value)| grid(&read).samples().get(at as u64) == f32::from(value)));
+        Ok(read.findings.iter().map(|finding| finding.code).collect::<Vec<_>>())
+    };
+    let plain = [&number(24, false, false)[..], &data].concat();
+    let end = "\n</AppendedData>\n</VTKFile>\n";
+    assert_eq!(told(&file("", &plain, end)).unwrap(), [""; 0]);
+    let tags = end.trim_end().len();
+    for cut in 0..tags {
+        assert_eq!(told(&file("", &plain, &end[..cut])).unwrap(), ["W-volume-truncated"], "{cut}");
+    }
+    let few = told(&file("", &plain[..plain.len() - 1], "")).map_err(|error: ReadError| error.code());
+    assert_eq!(few, Err("E-volume-truncated"));
+
+    let zlib = "compressor=\"vtkZLibDataCompressor\"";
+    let packed = [&table[..], &body].concat();
+    assert_eq!(told(&file(zlib, &packed, end)).unwrap(), [""; 0]);
+    for cut in 1..=4 {
+        // Once for the tags that are not there, once for the checksum.
+        let found = told(&file(zlib, &packed[..packed.len() - cut], "")).unwrap();
+        assert!(found.iter().all(|code| *code == "W-volume-truncated") && !found.is_empty(), "{cut}: {found:?}");
+        // A table that gives the second block less than it takes.
+        let mut short = table.clone();
+        short[16] -= cut as u8;
+        let first = usize::from(table[12]);
+        let end_of_second = first + usize::from(table[16]);
+        let body = [&body[..end_of_second - cut], &body[end_of_second..]].concat();
+        let whole = file(zlib, &[&short[..], &body].concat(), end);
+        assert_eq!(told(&whole).unwrap(), ["W-volume-truncated"], "{cut}");
+    }
+    let few = told(&file(zlib, &packed[..packed.len() - 5], "")).map_err(|error: ReadError| error.code());
+    assert_eq!(few, Err("E-volume-truncated"));
+}

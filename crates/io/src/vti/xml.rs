@@ -80,6 +80,8 @@ pub(super) struct Document {
     pub(super) appended: Option<Element>,
     /// Where appended data begin, after the `_`, and where they end.
     pub(super) appended_bytes: Option<(usize, usize)>,
+    /// Whether the file ends before the tags after appended data do.
+    pub(super) cut: bool,
 }
 
 /// Elements that mean something here.
@@ -170,6 +172,7 @@ impl Document {
                 _ => {
                     document.appended = Some(element);
                     document.appended_bytes = appended_bytes(input, end);
+                    document.cut = !is_closed(&input[end..]);
                     break;
                 }
             }
@@ -187,6 +190,15 @@ fn appended_bytes(input: &[u8], from: usize) -> Option<(usize, usize)> {
     let start = (input[from + mark] == b'_').then_some(from + mark + 1)?;
     let end = memchr::memmem::rfind(&input[start..], b"</AppendedData").map_or(input.len(), |end| start + end);
     Some((start, end))
+}
+
+/// Whether the elements of appended data and of the file end in the bytes after the tag of the former.
+fn is_closed(bytes: &[u8]) -> bool {
+    let end = |bytes: &'static [u8], within: &[u8]| {
+        let at = memchr::memmem::rfind(within, bytes)?;
+        memchr::memchr(b'>', &within[at..]).map(|close| at + close + 1)
+    };
+    end(b"</AppendedData", bytes).and_then(|at| end(b"</VTKFile", &bytes[at..])).is_some()
 }
 
 fn cut(input: &[u8], expected: &str) -> Box<Fault> {

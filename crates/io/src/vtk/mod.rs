@@ -2,7 +2,8 @@
 //!
 //! Binary numbers are big endian. The first `SCALARS` of one component is read, or the first such array of a `FIELD`; of
 //! points, else of cells: then samples are the middles of cells. Arrays named `occupancy` and `signed-distance` are what
-//! their names say. The format has no directions: axes run along those of space.
+//! their names say. The format has no directions: axes run along those of space. Its title, the second line, is a comment of
+//! the shape; of several comments the first is written.
 
 mod read;
 mod write;
@@ -10,6 +11,9 @@ mod write;
 use shapeloom_shape::Kind;
 
 use crate::{Format, Keeps, Precision, Sniff};
+
+/// The title of files of shapes that have no comment.
+const NO_TITLE: &str = "shapeloom";
 
 /// Legacy VTK.
 pub(crate) const FORMAT: Format = Format {

@@ -4,6 +4,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Category, Findings, Place, Severity};
 use shapeloom_voxels::{Quantity, Samples};
 
+use super::NO_TITLE;
 use crate::memory::Memory;
 use crate::text::{NumberFault, Scanner, in_lines, line_place, lossy, quoted};
 use crate::volumes::{
@@ -281,7 +282,7 @@ fn volume(
     }
     let quantity = if kind == Type::Bit { Quantity::Occupancy } else { quantity_of(name) };
     let mut shape = grid_shape(lattice, samples, quantity, findings)?;
-    if !title.is_empty() {
+    if !["", NO_TITLE].contains(&title.trim()) {
         shape.comments.push(title);
     }
     Ok(ReadShape::new(shape))

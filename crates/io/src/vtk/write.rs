@@ -6,7 +6,7 @@ use shapeloom_core::Report;
 use shapeloom_shape::Shape;
 use shapeloom_voxels::Samples;
 
-use super::FORMAT;
+use super::{FORMAT, NO_TITLE};
 use crate::placed::frame_losses;
 use crate::sink::Sink;
 use crate::volumes::{OneGrid, three};
@@ -24,14 +24,20 @@ pub(super) fn write(shape: &Shape, context: &WriteContext, out: &mut dyn Write) 
     report.losses = frame_losses(shape, &FORMAT);
     report.losses.retain(|loss| !loss.what.starts_with("placements of"));
     let title: String = match shape.comments.as_slice() {
-        [] => "shapeloom".into(),
+        [] => NO_TITLE.into(),
         [first, rest @ ..] => {
             let line: String = first.chars().map(|char| if char.is_control() { ' ' } else { char }).collect();
             let line = line.trim();
             let end = (0..=line.len().min(TITLE)).rev().find(|end| line.is_char_boundary(*end)).unwrap_or(0);
-            if !rest.is_empty() || end < line.len() {
-                let why = "Legacy VTK has one line for it";
-                report.losses.push(shapeloom_core::Loss::new("comments beyond the first 255 bytes", why));
+            let what = match (rest.is_empty(), end < line.len()) {
+                (true, false) => None,
+                (true, true) => Some(format!("the comment beyond its first {TITLE} bytes")),
+                (false, false) => Some("comments after the first".to_owned()),
+                (false, true) => Some(format!("comments after the first, and that beyond its first {TITLE} bytes")),
+            };
+            if let Some(what) = what {
+                let why = "legacy VTK has one line for words, its title";
+                report.losses.push(shapeloom_core::Loss::new(what, why));
             }
             line[..end].to_owned()
         }

@@ -3,6 +3,7 @@
 use shapeloom_core::{
     Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Report, options,
 };
+use shapeloom_isosurface::sample_range;
 
 use super::{as_distances, check_scale, distance_grid};
 use crate::{Quantity, VoxelError, VoxelGrid};
@@ -52,7 +53,7 @@ impl Convert<VoxelGrid> for OffsetLevelSet {
                 *value = moved.clamp(f32::MIN, f32::MAX);
             }
         }
-        let as_it_was = source.quantity() == Quantity::SignedDistance && source.range().not_finite == 0;
+        let as_it_was = source.quantity() == Quantity::SignedDistance && sample_range(source, exec)?.not_finite == 0;
         let (deviation, basis) = match (self.distance, as_it_was) {
             (0.0, true) => (Deviation::Exact, "nothing moves"),
             (0.0, false) => (

@@ -75,6 +75,9 @@ impl Subject {
         }
         let exec = session.exec();
         let conversion = convert_shape(&shape, &job, &exec).map_err(|error| Failure::from(error).about(path))?;
+        for step in &conversion.steps {
+            session.say_findings_about(&input.name, &step.report.findings);
+        }
         for loss in &conversion.losses {
             session.say(format_args!("{}: not compared: {loss}", input.name));
         }

@@ -238,7 +238,7 @@ fn what_does_not_fit_is_said() {
         "vertex attribute \"big\"",
         "vertex attribute \"texcoord\"",
         "vertex attribute \"wide\"",
-        "0 points of the point-cloud of part 1",
+        "the point-cloud of part 1, which is empty",
         "texture \"../brick.png\"",
         // Scaled and rounded, and replaced.
         "vertex attribute \"normal\"",
