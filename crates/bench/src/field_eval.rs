@@ -134,8 +134,9 @@ pub(crate) fn points(setting: &Setting) -> Result<Vec<Outcome>, String> {
                 expected = values;
             }
             let Some(theirs) = theirs else { continue };
-            let close =
-                |a: f32, b: f32| (a - b).abs() <= 1e-4 * (1.0 + a.abs().max(b.abs())) || a.is_nan() == b.is_nan();
+            let close = |a: f32, b: f32| {
+                (a - b).abs() <= 1e-4 * (1.0 + a.abs().max(b.abs())) || a == b || (a.is_nan() && b.is_nan())
+            };
             let differ = found.iter().zip(&expected).filter(|&(&a, &b)| !close(a, b)).count();
             let mut figures = figures(&model, "points", x.len(), ours, theirs);
             figures.insert("differ".into(), json!(differ));

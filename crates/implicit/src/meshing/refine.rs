@@ -105,7 +105,7 @@ fn descend<F: Field + ?Sized>(field: &F, start: DVec3, low: DVec3, high: DVec3) 
         place = next.clamp(low, high);
         value = field.value(place);
         // Steps that gain nothing are the end of what rounding allows, or of the way.
-        if value.abs() >= least || value.is_nan() {
+        if value.is_nan() || value.abs() >= least {
             break;
         }
         (best, least) = (place, value.abs());

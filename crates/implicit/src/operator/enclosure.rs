@@ -71,7 +71,7 @@ impl Enclosure {
     /// v ± e lies at the neighbour or beyond, and rounding, which is monotone, does not bring it back. An end that is not
     /// finite and faces inward gives not a number, hence nothing known.
     #[inline(always)]
-    fn outward(lo: f64, hi: f64) -> Self {
+    pub(crate) fn outward(lo: f64, hi: f64) -> Self {
         let (lo, hi) = (lo - room(lo), hi + room(hi));
         if lo.is_nan() || hi.is_nan() {
             return Self::UNKNOWN;

@@ -10,7 +10,9 @@ use crate::operator::{Binary, Choice, Enclosure, Unary};
 /// Evaluates programs over boxes. One for each thread; it keeps its memory from call to call and serves any program.
 #[derive(Clone, Debug, Default)]
 pub struct IntervalEvaluator {
-    bounds: Vec<Enclosure>,
+    /// Ends and whether undefined, apart: a struct of both is copied by words, which waits for the byte just written.
+    ends: Vec<[f64; 2]>,
+    undefined: Vec<bool>,
     choices: Vec<Choice>,
 }
 
@@ -40,44 +42,53 @@ impl IntervalEvaluator {
     /// outside. Also which operands were taken.
     pub fn bounds(&mut self, program: &Program, region: &Aabb) -> (Enclosure, Trace<'_>) {
         let parts = &*program.0;
-        self.bounds.clear();
-        self.bounds.reserve(parts.steps.len());
+        self.ends.clear();
+        self.ends.reserve(parts.steps.len());
+        self.undefined.clear();
+        self.undefined.reserve(parts.steps.len());
         self.choices.clear();
         for (code, step) in parts.codes.iter().zip(&parts.steps) {
-            let (a, b) = (self.bounds.get(code.a as usize), self.bounds.get(code.b as usize));
+            let (a, b) = (self.at(code.a as usize), self.at(code.b as usize));
             let bounds = match (code.kind, a, b) {
                 (Kind::Constant, ..) => match *step {
                     Step::Constant(value) => Enclosure::exactly(value),
                     _ => Enclosure::UNKNOWN,
                 },
-                (Kind::Square, Some(a), _) => Unary::Square.of_enclosure(*a),
-                (Kind::SquareRoot, Some(a), _) => Unary::SquareRoot.of_enclosure(*a),
-                (Kind::Negate, Some(a), _) => Unary::Negate.of_enclosure(*a),
-                (Kind::Absolute, Some(a), _) => Unary::Absolute.of_enclosure(*a),
-                (Kind::Add, Some(a), Some(b)) => Binary::Add.of_enclosures(*a, *b).0,
-                (Kind::Subtract, Some(a), Some(b)) => Binary::Subtract.of_enclosures(*a, *b).0,
-                (Kind::Multiply, Some(a), Some(b)) => Binary::Multiply.of_enclosures(*a, *b).0,
+                (Kind::Square, Some(a), _) => Unary::Square.of_enclosure(a),
+                (Kind::SquareRoot, Some(a), _) => Unary::SquareRoot.of_enclosure(a),
+                (Kind::Negate, Some(a), _) => Unary::Negate.of_enclosure(a),
+                (Kind::Absolute, Some(a), _) => Unary::Absolute.of_enclosure(a),
+                (Kind::Add, Some(a), Some(b)) => Binary::Add.of_enclosures(a, b).0,
+                (Kind::Subtract, Some(a), Some(b)) => Binary::Subtract.of_enclosures(a, b).0,
+                (Kind::Multiply, Some(a), Some(b)) => Binary::Multiply.of_enclosures(a, b).0,
                 (Kind::Minimum, Some(a), Some(b)) => {
-                    let (bounds, choice) = Binary::Minimum.of_enclosures(*a, *b);
+                    let (bounds, choice) = Binary::Minimum.of_enclosures(a, b);
                     self.choices.push(choice);
                     bounds
                 }
                 (Kind::Maximum, Some(a), Some(b)) => {
-                    let (bounds, choice) = Binary::Maximum.of_enclosures(*a, *b);
+                    let (bounds, choice) = Binary::Maximum.of_enclosures(a, b);
                     self.choices.push(choice);
                     bounds
                 }
                 _ => self.other(step, &parts.calls, region),
             };
-            self.bounds.push(bounds);
+            self.ends.push([bounds.lo, bounds.hi]);
+            self.undefined.push(bounds.undefined);
         }
-        (self.bounds[parts.result.index()], Trace(&self.choices))
+        (self.at(parts.result.index()).unwrap_or(Enclosure::UNKNOWN), Trace(&self.choices))
+    }
+
+    #[inline(always)]
+    fn at(&self, step: usize) -> Option<Enclosure> {
+        let (&[lo, hi], &undefined) = (self.ends.get(step)?, self.undefined.get(step)?);
+        Some(Enclosure { lo, hi, undefined })
     }
 
     /// A step that is not among the common ones.
     #[inline(never)]
     fn other(&mut self, step: &Step, calls: &[Call], region: &Aabb) -> Enclosure {
-        let at = |value: super::Value| self.bounds[value.index()];
+        let at = |value: super::Value| self.at(value.index()).unwrap_or(Enclosure::UNKNOWN);
         match *step {
             Step::Constant(value) => Enclosure::exactly(value),
             Step::Linear(linear) => linear.over(region),
@@ -151,6 +162,35 @@ impl Code {
 
 impl Linear {
     fn over(&self, region: &Aabb) -> Enclosure {
+        if !region.min.is_finite() || !region.max.is_finite() {
+            return self.over_any(region);
+        }
+        let (mut lo, mut hi) = (self.offset, self.offset);
+        let mut empty = self.offset == 0.0;
+        for axis in 0..3 {
+            let slope = self.slope[axis];
+            if slope == 0.0 {
+                continue;
+            }
+            let (from, to) = (region.min[axis], region.max[axis]);
+            // Nothing is rounded where a coordinate is taken as it is.
+            let part = if slope == 1.0 {
+                Enclosure { lo: from, hi: to, undefined: false }
+            } else if slope > 0.0 {
+                Enclosure::outward(slope * from, slope * to)
+            } else {
+                Enclosure::outward(slope * to, slope * from)
+            };
+            let sum = if empty { part } else { Enclosure::outward(lo + part.lo, hi + part.hi) };
+            if sum.undefined || part.undefined {
+                return Enclosure::UNKNOWN;
+            }
+            (lo, hi, empty) = (sum.lo, sum.hi, false);
+        }
+        Enclosure::new(lo, hi)
+    }
+
+    fn over_any(&self, region: &Aabb) -> Enclosure {
         let ends = region.min.to_array().into_iter().zip(region.max.to_array());
         let mut sum = Enclosure::exactly(self.offset);
         let mut empty = self.offset == 0.0;
