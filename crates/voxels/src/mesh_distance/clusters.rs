@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use multiversion::multiversion;
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{Aabb, ConvertError, Exec, Reservation};
 
@@ -21,6 +22,8 @@ pub(super) struct Cluster {
     pub radius: f64,
     /// The sum of areas, over 4π.
     pub area: f64,
+    /// The mean squared distance from the centre.
+    pub spread: f64,
     pub dipole: DVec3,
     pub quadrupole: Quadratic,
     pub octupole: Cubic,
@@ -31,13 +34,14 @@ impl Cluster {
         center: DVec3::ZERO,
         radius: 0.0,
         area: 0.0,
+        spread: 0.0,
         dipole: DVec3::ZERO,
         quadrupole: [0.0; 6],
         octupole: [0.0; 10],
     };
 
     /// A triangle around its centroid, where its second moment is a twelfth of the corners'.
-    pub fn of_triangle(corners: &[DVec3; 3]) -> Self {
+    fn of_triangle(corners: &[DVec3; 3]) -> Self {
         let [a, b, c] = *corners;
         let dipole = (b - a).cross(c - a) * 0.5;
         let center = (a + b + c) / 3.0;
@@ -53,6 +57,7 @@ impl Cluster {
         Self {
             center,
             radius: radius * (1.0 + 1e-12),
+            spread: (second[0] + second[1] + second[2]) * (1.0 + 1e-12),
             area: dipole.length() / (4.0 * PI),
             dipole,
             quadrupole: [0.0; 6],
@@ -71,6 +76,7 @@ impl Cluster {
         for part in [one, other] {
             let moved = part.center - center;
             sum.radius = sum.radius.max((moved.length() + part.radius) * (1.0 + 1e-12));
+            sum.spread += (part.spread + moved.length_squared()) * (part.area / area) * (1.0 + 1e-12);
             sum.dipole += part.dipole;
             let shift = product(part.dipole, moved);
             add(&mut sum.quadrupole, &part.quadrupole, 1.0);
@@ -99,45 +105,6 @@ pub(super) struct Taylor {
 impl Taylor {
     pub const ZERO: Self = Self { value: 0.0, slope: DVec3::ZERO, bend: [0.0; 6], error: 0.0 };
 
-    /// What leaving out all terms of the Taylor series of a cluster's winding number from the third degree on changes at most within
-    /// `radius` of a place `way` before it.
-    ///
-    /// With t the sum of both radii over the distance D, the term of degree k of the gradient of 1/r is at most (k + 1) tᵏ / D²: as a
-    /// form it is (k + 1) times a harmonic one that is at most 1 on the sphere. Σ (k + 1) tᵏ from k = 3 is t³ (4 − 3 t) / (1 − t)².
-    /// Rounding adds some ulps of the whole.
-    #[inline(always)]
-    pub fn error_of(center: DVec3, cluster_radius: f64, area: f64, place: DVec3, radius: f64) -> f64 {
-        let squared = (center - place).length_squared();
-        let reach = cluster_radius + radius;
-        if reach * reach > MOST_RATIO * MOST_RATIO * squared {
-            return f64::INFINITY;
-        }
-        let t = reach / squared.sqrt();
-        let truncation = t * t * t * (4.0 - 3.0 * t) / ((1.0 - t) * (1.0 - t));
-        area / squared * (truncation * (1.0 + 1e-9) + ROUNDING)
-    }
-
-    /// Adds a cluster's winding number around `place`; see [`Taylor::error_of`] for what that neglects.
-    ///
-    /// It is −1/4π ∫ n·∇G(D + η − ξ) with G = 1/r, D the way to the cluster's centre, η from there to the triangles, ξ from the place.
-    #[inline(always)]
-    pub fn add(&mut self, cluster: &Cluster, place: DVec3) {
-        let x = cluster.center - place;
-        let squared = x.length_squared();
-        let inverse = 1.0 / squared;
-        let third = inverse * inverse.sqrt() * (-1.0 / (4.0 * PI));
-        let fifth = third * inverse;
-        let seventh = fifth * inverse;
-        let along = cluster.dipole.dot(x);
-        let bent = quadratic(&cluster.quadrupole, x);
-        self.value += -along * third + 3.0 * bent * fifth - 7.5 * cubic(&cluster.octupole, x) * seventh;
-        self.slope += cluster.dipole * third - x * (3.0 * along * fifth) + x * (15.0 * bent * seventh)
-            - gradient(&cluster.quadrupole, x) * (3.0 * fifth);
-        add(&mut self.bend, &square(x), -7.5 * along * seventh);
-        add(&mut self.bend, &product(cluster.dipole, x), 3.0 * fifth);
-        self.bend[..3].iter_mut().for_each(|diagonal| *diagonal += 1.5 * along * fifth);
-    }
-
     /// The same series about another place.
     pub fn moved(&self, by: DVec3) -> Self {
         Self { value: self.at(by), slope: self.slope + gradient(&self.bend, by), ..*self }
@@ -156,6 +123,104 @@ impl Taylor {
     }
 }
 
+/// What is to be known of some clusters before they are added.
+pub(super) struct Look {
+    /// What leaving out the rest of the series is wrong by at most; infinity where it is not known.
+    pub errors: [f64; LANES],
+    /// What the winding number itself is at most.
+    pub most: [f64; LANES],
+}
+
+/// What leaving out all terms of the Taylor series of a cluster's winding number from the third degree on changes at most within
+/// `radius` of a place.
+///
+/// The term of degree k of the gradient of 1/r, at a distance D and δ away, is at most (k + 1) δᵏ / Dᵏ⁺²: as a form it is (k + 1)
+/// times a harmonic one that is at most 1 on the sphere. With t the largest δ/D, Σ (k + 1) (δ/D)ᵏ from k = 3 is at most
+/// (δ/D)³ (4 − 3 t) / (1 − t)². Here δ is at most ρ + |η|, ρ being the radius around the place and η the way from the cluster's
+/// centre; the mean of its cube follows from that of |η|², |η| being at most the cluster's radius. Rounding adds some ulps of all.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn look(all: &[Cluster], which: &[u32], place: DVec3, radius: f64) -> Look {
+    let mut fields = [[1.0; LANES]; 6];
+    for (lane, &at) in which.iter().enumerate().take(LANES) {
+        let cluster = &all[at as usize];
+        let way = cluster.center - place;
+        let known = [way.x, way.y, way.z, cluster.radius, cluster.area, cluster.spread];
+        fields.iter_mut().zip(known).for_each(|(field, value)| field[lane] = value);
+    }
+    let mut found = Look { errors: [0.0; LANES], most: [0.0; LANES] };
+    let [x, y, z, cluster_radius, area, spread] = &fields;
+    for lane in 0..LANES {
+        let squared = x[lane] * x[lane] + y[lane] * y[lane] + z[lane] * z[lane];
+        let distance = squared.sqrt();
+        let reach = cluster_radius[lane] + radius;
+        let inverse = 1.0 / distance;
+        let t = reach * inverse;
+        let cubed = spread[lane] * (cluster_radius[lane] + 3.0 * radius)
+            + radius * radius * (3.0 * spread[lane].sqrt() + radius);
+        let gap = 1.0 - t;
+        let truncation = cubed * (inverse * inverse * inverse) * (4.0 - 3.0 * t) / (gap * gap);
+        let error = area[lane] * (inverse * inverse) * (truncation * (1.0 + 1e-9) + ROUNDING);
+        found.errors[lane] = if t < MOST_RATIO { error } else { f64::INFINITY };
+        let left = distance - reach;
+        let most = area[lane] / (left * left) * (1.0 + 1e-9);
+        found.most[lane] = if left > 0.0 { most } else { f64::INFINITY };
+    }
+    found
+}
+
+/// Adds the winding numbers of clusters around `place` to a series about it; see [`look`] for what that neglects.
+///
+/// It is −1/4π ∫ n·∇G(D + η − ξ) with G = 1/r, D the way to the cluster's centre, η from there to the triangles, ξ from the place.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn add_all(taylor: &mut Taylor, all: &[Cluster], which: &[u32], place: DVec3) {
+    let mut sums = [[0.0; LANES]; 10];
+    for part in which.chunks(LANES) {
+        // Lanes without a cluster see nothing, at a distance of 1.
+        let (mut way, mut dipole) = ([[1.0; LANES], [0.0; LANES], [0.0; LANES]], [[0.0; LANES]; 3]);
+        let (mut second, mut third) = ([[0.0; LANES]; 6], [[0.0; LANES]; 10]);
+        for (lane, &at) in part.iter().enumerate() {
+            let cluster = &all[at as usize];
+            let x = cluster.center - place;
+            (0..3).for_each(|axis| way[axis][lane] = x[axis]);
+            (0..3).for_each(|axis| dipole[axis][lane] = cluster.dipole[axis]);
+            second.iter_mut().zip(cluster.quadrupole).for_each(|(out, q)| out[lane] = q);
+            third.iter_mut().zip(cluster.octupole).for_each(|(out, o)| out[lane] = o);
+        }
+        for lane in 0..LANES {
+            let x = DVec3::new(way[0][lane], way[1][lane], way[2][lane]);
+            let s = DVec3::new(dipole[0][lane], dipole[1][lane], dipole[2][lane]);
+            let q = [0, 1, 2, 3, 4, 5].map(|i| second[i][lane]);
+            let o = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|i| third[i][lane]);
+            let inverse = 1.0 / (x.x * x.x + x.y * x.y + x.z * x.z);
+            let p3 = inverse * inverse.sqrt() * (-1.0 / (4.0 * PI));
+            let p5 = p3 * inverse;
+            let p7 = p5 * inverse;
+            let along = s.x * x.x + s.y * x.y + s.z * x.z;
+            let bent = quadratic(&q, x);
+            let turned = gradient(&q, x);
+            sums[0][lane] += 3.0 * bent * p5 - along * p3 - 7.5 * cubic(&o, x) * p7;
+            let back = 15.0 * bent * p7 - 3.0 * along * p5;
+            sums[1][lane] += s.x * p3 + x.x * back - turned.x * (3.0 * p5);
+            sums[2][lane] += s.y * p3 + x.y * back - turned.y * (3.0 * p5);
+            sums[3][lane] += s.z * p3 + x.z * back - turned.z * (3.0 * p5);
+            let (one, two, same) = (-7.5 * along * p7, 3.0 * p5, 1.5 * along * p5);
+            sums[4][lane] += x.x * (one * x.x + two * s.x) + same;
+            sums[5][lane] += x.y * (one * x.y + two * s.y) + same;
+            sums[6][lane] += x.z * (one * x.z + two * s.z) + same;
+            sums[7][lane] += 2.0 * one * (x.x * x.y) + two * (s.x * x.y + s.y * x.x);
+            sums[8][lane] += 2.0 * one * (x.x * x.z) + two * (s.x * x.z + s.z * x.x);
+            sums[9][lane] += 2.0 * one * (x.y * x.z) + two * (s.y * x.z + s.z * x.y);
+        }
+    }
+    let [value, x, y, z, bend @ ..] = sums.map(|[a, b, c, d]| (a + c) + (b + d));
+    taylor.value += value;
+    taylor.slope += DVec3::new(x, y, z);
+    add(&mut taylor.bend, &bend, 1.0);
+}
+
+/// How many clusters are added together.
+pub(super) const LANES: usize = 4;
+
 /// Clusters nearer than the radii over this are never added.
 const MOST_RATIO: f64 = 0.75;
 
@@ -168,16 +233,10 @@ const GROUP: usize = 4;
 /// Triangles in a complete binary tree of clusters: node `i` has the nodes `2 i + 1` and `2 i + 2` in it, the last level triangles.
 pub(super) struct Clusters {
     pub triangles: Vec<[DVec3; 3]>,
-    nodes: Vec<Cluster>,
+    /// The nodes, then each triangle.
+    pub all: Vec<Cluster>,
     levels: u32,
     _memory: Reservation,
-}
-
-/// A cluster or a triangle of the tree.
-#[derive(Clone, Copy)]
-pub(super) enum Part {
-    Node(u32),
-    Triangle(u32),
 }
 
 impl Clusters {
@@ -185,7 +244,7 @@ impl Clusters {
     pub fn new(mut triangles: Vec<[DVec3; 3]>, exec: &Exec) -> Result<Self, ConvertError> {
         let len = triangles.len();
         let levels = len.div_ceil(GROUP).max(1).next_power_of_two().trailing_zeros();
-        let memory = exec.reserve_elements(2u64 << levels, size_of::<Cluster>())?;
+        let memory = exec.reserve_elements(2 * len as u64 + (2u64 << levels), size_of::<Cluster>())?;
         let middle_of = |[a, b, c]: &[DVec3; 3]| *a + *b + *c;
         for level in 0..levels {
             for part in 0..1usize << level {
@@ -204,6 +263,8 @@ impl Clusters {
                 }
             }
         }
+        let single: Vec<Cluster> = triangles.iter().map(Cluster::of_triangle).collect();
+        exec.check()?;
         let mut nodes = vec![Cluster::EMPTY; (2usize << levels) - 1];
         for level in (0..=levels).rev() {
             for part in 0..1usize << level {
@@ -212,32 +273,33 @@ impl Clusters {
                 }
                 let at = (1usize << level) - 1 + part;
                 nodes[at] = if level == levels {
-                    let inner = triangles[span(len, levels, level, part)].iter().map(Cluster::of_triangle);
-                    inner.fold(Cluster::EMPTY, |sum, one| Cluster::of_two(&sum, &one))
+                    let inner = single[span(len, levels, level, part)].iter();
+                    inner.fold(Cluster::EMPTY, |sum, one| Cluster::of_two(&sum, one))
                 } else {
                     Cluster::of_two(&nodes[2 * at + 1], &nodes[2 * at + 2])
                 };
             }
         }
-        Ok(Self { triangles, nodes, levels, _memory: memory })
+        nodes.extend(single);
+        Ok(Self { triangles, all: nodes, levels, _memory: memory })
     }
 
-    pub fn node(&self, at: u32) -> &Cluster {
-        &self.nodes[at as usize]
-    }
-
-    /// Tells `visit` what is in a node: nodes or triangles.
+    /// Which of the triangles a cluster is, if it is one.
     #[inline(always)]
-    pub fn open(&self, at: u32, mut visit: impl FnMut(Part)) {
-        let below = 2 * at + 1;
-        if (below as usize) < self.nodes.len() {
-            visit(Part::Node(below));
-            visit(Part::Node(below + 1));
+    pub fn triangle(&self, at: u32) -> Option<u32> {
+        at.checked_sub((2u32 << self.levels) - 1)
+    }
+
+    /// Lists what is in a node: nodes or triangles.
+    #[inline(always)]
+    pub fn open(&self, at: u32, list: &mut Vec<u32>) {
+        let (below, nodes) = (2 * at + 1, (2u32 << self.levels) - 1);
+        if below < nodes {
+            list.extend([below, below + 1]);
         } else {
             let part = at as usize + 1 - (1usize << self.levels);
-            for triangle in span(self.triangles.len(), self.levels, self.levels, part) {
-                visit(Part::Triangle(triangle as u32));
-            }
+            let triangles = span(self.triangles.len(), self.levels, self.levels, part);
+            list.extend(triangles.map(|triangle| nodes + triangle as u32));
         }
     }
 }
@@ -314,5 +376,90 @@ fn without_trace(form: &mut Cubic) {
     let z = (3.0 * zzz + xxz + yyz) / 5.0;
     for (at, part) in [x, y, z, y, z, x, z, x, y].into_iter().enumerate() {
         form[at] -= part;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{Dice, icosahedron, some, soup, torus};
+    use shapeloom_mesh::TriMesh;
+    use shapeloom_spatial::generalized_winding_number;
+
+    fn clusters(mesh: &TriMesh) -> Clusters {
+        let triangles = (0..mesh.triangles().len()).map(|i| mesh.corners(i)).collect();
+        Clusters::new(triangles, &Exec::default()).unwrap()
+    }
+
+    /// Series of whole meshes, moved and not, against sums over all triangles: never wrong by more than said, at times by a good part
+    /// of it.
+    #[test]
+    fn series_are_as_right_as_they_say() {
+        let mut dice = Dice(4);
+        let mut worst = 0f64;
+        let single = |seed| soup(1, 0.7, seed);
+        let mut meshes = vec![some(&icosahedron(), |i| i % 4 != 1), soup(41, 0.3, 2), torus(12, 7)];
+        meshes.extend((5..25).map(single));
+        for mesh in meshes {
+            let clusters = clusters(&mesh);
+            let root = clusters.all[0];
+            for turn in 0..60 {
+                let place = root.center + dice.point().normalize() * root.radius * (1.3 + 3.0 * dice.unit());
+                let distance = (place - root.center).length();
+                let radius =
+                    if turn % 3 == 0 { 0.0 } else { (distance * MOST_RATIO - root.radius).max(0.0) * dice.unit() };
+                let found = look(&clusters.all, &[0], place, radius);
+                let (error, found_most) = (found.errors[0], found.most[0]);
+                if error == f64::INFINITY {
+                    assert!(distance < 1.01 * (root.radius + radius) / MOST_RATIO);
+                    continue;
+                }
+                let mut series = Taylor::ZERO;
+                add_all(&mut series, &clusters.all, &[0], place);
+                let aside = dice.point() * radius;
+                let elsewhere = series.moved(aside);
+                for way in [DVec3::ZERO, dice.point().normalize() * radius, (root.center - place).normalize() * radius]
+                {
+                    let exact =
+                        generalized_winding_number(mesh.positions(), mesh.triangles(), place + way, &Exec::default());
+                    let exact = exact.unwrap().value;
+                    let found = series.at(way);
+                    assert!((found - exact).abs() <= error + 1e-13, "{found} {exact} {error}");
+                    assert!(exact.abs() <= found_most + 1e-15, "{exact} {found_most}");
+                    assert!((elsewhere.at(way - aside) - found).abs() < 1e-12);
+                    assert!((found - series.value).abs() <= series.change(radius) + 1e-15);
+                    worst = worst.max((found - exact).abs() / error);
+                }
+            }
+        }
+        assert!(worst > 0.2, "{worst}");
+    }
+
+    /// Every node's series is of the triangles in it, and its ball holds them.
+    #[test]
+    fn nodes_hold_what_they_say() {
+        let mesh = soup(77, 0.2, 8);
+        let clusters = clusters(&mesh);
+        let mut waiting = vec![0u32];
+        let mut seen = 0;
+        while let Some(at) = waiting.pop() {
+            let node = clusters.all[at as usize];
+            let (mut inner, mut next) = (Vec::new(), vec![at]);
+            while let Some(below) = next.pop() {
+                match clusters.triangle(below) {
+                    Some(triangle) => inner.push(clusters.triangles[triangle as usize]),
+                    None => clusters.open(below, &mut next),
+                }
+            }
+            seen = seen.max(inner.len());
+            let corners = inner.as_flattened();
+            assert!(corners.iter().all(|corner| corner.distance(node.center) <= node.radius), "{at}");
+            let area: f64 = inner.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).length() * 0.5).sum();
+            assert!((area - node.area * 4.0 * PI).abs() < 1e-12);
+            if clusters.triangle(at).is_none() {
+                clusters.open(at, &mut waiting);
+            }
+        }
+        assert_eq!(seen, 77);
     }
 }

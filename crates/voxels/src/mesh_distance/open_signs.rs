@@ -3,7 +3,7 @@
 use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ConvertError, Exec};
 
-use super::clusters::{Cluster, Clusters, Part, Taylor};
+use super::clusters::{Clusters, LANES as CLUSTERS, Taylor, add_all, look};
 use super::near_triangle::LANES;
 use super::turns::{Places, turns, turns_around};
 
@@ -15,7 +15,7 @@ const LAST: u32 = 4;
 
 /// What a cluster may be wrong by to be taken whole, in turns, each as long as samples are left open by the one before it. As
 /// triangles to be measured grow in number with its power -2/5 or so, a few steps are better than one.
-const TOLERANCES: [f64; 5] = [2e-3, 1e-4, 1e-5, 1e-6, 1e-7];
+const TOLERANCES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
 /// Tells inside from outside by winding numbers above 1/2.
 ///
@@ -60,11 +60,13 @@ impl Samples<'_> {
 struct Work {
     /// Samples, by cube: those of the cubes around one come before its own.
     samples: Vec<[u32; 3]>,
-    /// Nodes and triangles that are near a cube; as above.
-    nodes: Vec<u32>,
-    triangles: Vec<u32>,
-    /// Nodes to be looked at.
+    /// Clusters that are near a cube; as above.
+    near: Vec<u32>,
+    /// Clusters to be looked at.
     waiting: Vec<u32>,
+    /// Clusters that are far from the cube.
+    far: Vec<u32>,
+    /// Samples that a tolerance leaves open.
     open: Vec<[u32; 3]>,
 }
 
@@ -73,8 +75,7 @@ struct Work {
 struct Cube {
     side: u32,
     samples: usize,
-    nodes: usize,
-    triangles: usize,
+    near: usize,
 }
 
 impl OpenSigns<'_> {
@@ -108,11 +109,10 @@ impl OpenSigns<'_> {
                 return Ok(());
             }
             work.samples.clear();
-            work.nodes.clear();
-            work.triangles.clear();
+            work.near.clear();
             work.samples.append(&mut work.open);
-            work.nodes.push(0);
-            let cube = Cube { side: CUBE as u32, samples: 0, nodes: 0, triangles: 0 };
+            work.near.push(0);
+            let cube = Cube { side: CUBE as u32, samples: 0, near: 0 };
             self.settle(cube, None, tolerance, work, samples, exec)?;
         }
         for at in 0..work.open.len() {
@@ -152,36 +152,37 @@ impl OpenSigns<'_> {
         let radius = (high - place).length() * (1.0 + 1e-12);
         let mut far = around.map_or(Taylor::ZERO, |(taylor, about)| taylor.moved(place - about));
         let is_last = cube.side <= LAST;
-        let (nodes, triangles) = (work.nodes.len(), work.triangles.len());
+        let end = work.near.len();
         let mut near = 0.0;
-        for at in cube.triangles..triangles {
-            let triangle = work.triangles[at];
-            near += self.look(triangle, place, radius, tolerance, &mut far, &mut work.triangles);
-        }
-        for at in cube.nodes..nodes {
-            work.waiting.push(work.nodes[at]);
-            while let Some(at) = work.waiting.pop() {
-                let node = self.closing.node(at);
-                if node.area == 0.0 {
+        work.far.clear();
+        work.waiting.clear();
+        work.waiting.extend_from_slice(&work.near[cube.near..]);
+        while !work.waiting.is_empty() {
+            let mut some = [0; CLUSTERS];
+            let count = work.waiting.len().min(CLUSTERS);
+            some[..count].copy_from_slice(&work.waiting[work.waiting.len() - count..]);
+            work.waiting.truncate(work.waiting.len() - count);
+            let found = look(&self.closing.all, &some[..count], place, radius);
+            for (lane, &at) in some[..count].iter().enumerate() {
+                let cluster = &self.closing.all[at as usize];
+                if cluster.area == 0.0 {
                     continue;
                 }
-                let error = Taylor::error_of(node.center, node.radius, node.area, place, radius);
-                if error <= tolerance {
-                    far.add(node, place);
-                    far.error += error;
-                } else if is_last || node.radius > radius {
-                    self.closing.open(at, |part| match part {
-                        Part::Node(below) => work.waiting.push(below),
-                        Part::Triangle(triangle) => {
-                            near += self.look(triangle, place, radius, tolerance, &mut far, &mut work.triangles);
-                        }
-                    });
+                if found.errors[lane] <= tolerance {
+                    far.error += found.errors[lane];
+                    work.far.push(at);
+                } else if let Some(triangle) = self.closing.triangle(at) {
+                    near += found.most[lane].min(0.5);
+                    work.near.push(if is_last { triangle } else { at });
+                } else if is_last || cluster.radius > radius {
+                    self.closing.open(at, &mut work.waiting);
                 } else {
-                    near += most(node, place, radius);
-                    work.nodes.push(at);
+                    near += found.most[lane];
+                    work.near.push(at);
                 }
             }
         }
+        add_all(&mut far, &self.closing.all, &work.far, place);
         let spread = far.change(radius) + far.error + near;
         let nearest = far.value.round();
         if (far.value - nearest).abs() + spread < 0.5 {
@@ -192,18 +193,12 @@ impl OpenSigns<'_> {
             }
         } else if is_last {
             exec.check()?;
-            self.each(
-                &work.samples[cube.samples..],
-                &work.triangles[triangles..],
-                (&far, place),
-                &mut work.open,
-                samples,
-            );
+            self.each(&work.samples[cube.samples..], &work.near[end..], (&far, place), &mut work.open, samples);
         } else {
             let half = cube.side / 2;
-            let end = work.samples.len();
+            let last = work.samples.len();
             for octant in 0..8u32 {
-                for at in cube.samples..end {
+                for at in cube.samples..last {
                     let sample = work.samples[at];
                     // Cubes begin at multiples of their side.
                     let part = (0..3).map(|axis| u32::from(sample[axis] & half != 0) << axis).sum::<u32>();
@@ -211,39 +206,13 @@ impl OpenSigns<'_> {
                         work.samples.push(sample);
                     }
                 }
-                let part = Cube { side: half, samples: end, nodes, triangles };
+                let part = Cube { side: half, samples: last, near: end };
                 self.settle(part, Some((far, place)), tolerance, work, samples, exec)?;
-                work.samples.truncate(end);
+                work.samples.truncate(last);
             }
         }
-        work.nodes.truncate(nodes);
-        work.triangles.truncate(triangles);
+        work.near.truncate(end);
         Ok(())
-    }
-
-    /// Adds a triangle to what is far, or to those that are near; what its winding number is at most in the latter case.
-    #[inline(always)]
-    fn look(
-        &self,
-        triangle: u32,
-        place: DVec3,
-        radius: f64,
-        tolerance: f64,
-        far: &mut Taylor,
-        near: &mut Vec<u32>,
-    ) -> f64 {
-        let cluster = Cluster::of_triangle(&self.closing.triangles[triangle as usize]);
-        if cluster.area == 0.0 {
-            return 0.0;
-        }
-        let error = Taylor::error_of(cluster.center, cluster.radius, cluster.area, place, radius);
-        if error <= tolerance {
-            far.add(&cluster, place);
-            far.error += error;
-            return 0.0;
-        }
-        near.push(triangle);
-        most(&cluster, place, radius).min(0.5)
     }
 
     /// Settles samples one by one, with near triangles; those that this tolerance leaves open are listed.
@@ -274,13 +243,6 @@ impl OpenSigns<'_> {
             }
         }
     }
-}
-
-/// What a cluster's winding number is at most within a radius of a place.
-#[inline(always)]
-fn most(cluster: &Cluster, place: DVec3, radius: f64) -> f64 {
-    let distance = (cluster.center - place).length() - cluster.radius - radius;
-    if distance > 0.0 { cluster.area / (distance * distance) * (1.0 + 1e-9) } else { f64::INFINITY }
 }
 
 /// The winding number of all triangles, with compensated summation (Neumaier 1974), and what rounding may change.

@@ -145,3 +145,85 @@ fn in_plane(corners: &[DVec3; 3], place: DVec3) -> (f64, f64) {
     // A triangle without area is not seen.
     (0.0, 0.0)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{Dice, soup, torus};
+    use shapeloom_core::Exec;
+    use shapeloom_spatial::generalized_winding_number;
+
+    /// Products of many factors against sums of angles: whole turns included.
+    #[test]
+    fn products_wind_as_often_as_sums_of_angles() {
+        let mut dice = Dice(12);
+        // Triangles on triangles and turned ones: many turns, both ways.
+        let many = |count: usize, flip: bool| {
+            let [a, b, c] = [DVec3::X, DVec3::Y, DVec3::Z];
+            vec![if flip { [a, c, b] } else { [a, b, c] }; count]
+        };
+        let of = |mesh: shapeloom_mesh::TriMesh| (0..mesh.triangles().len()).map(|i| mesh.corners(i)).collect();
+        let sets: Vec<Vec<[DVec3; 3]>> =
+            vec![of(soup(90, 0.9, 5)), of(torus(20, 9)), many(50, false), many(51, true), vec![]];
+        let mut most = 0f64;
+        for set in sets {
+            let some: Vec<u32> = (0..set.len() as u32).collect();
+            for _ in 0..60 {
+                let mut places = [[0.0; LANES]; 3];
+                for lane in 0..LANES {
+                    let place = if lane < 4 { dice.point() } else { DVec3::splat(0.33) + dice.point() * 0.01 };
+                    (0..3).for_each(|axis| places[axis][lane] = place[axis]);
+                }
+                let (found, errors) = turns_around(&set, &some, &places);
+                for lane in 0..LANES {
+                    let place = DVec3::new(places[0][lane], places[1][lane], places[2][lane]);
+                    let positions = set.as_flattened();
+                    let indices: Vec<[u32; 3]> = some.iter().map(|&i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+                    let exact = generalized_winding_number(positions, &indices, place, &Exec::default()).unwrap();
+                    assert!(
+                        (found[lane] - exact.value).abs() <= errors[lane] + exact.bound,
+                        "{} {exact:?}",
+                        found[lane]
+                    );
+                    assert!(errors[lane] < 1e-5);
+                    most = most.max(exact.value.abs());
+                }
+            }
+        }
+        assert!(most > 20.0, "{most}");
+    }
+
+    /// Places in a triangle are on the side where moving them a little puts them; beside it they see nothing of it, on its border they
+    /// are told.
+    #[test]
+    fn places_in_a_triangle_are_moved_a_little() {
+        let moved = DVec3::new(-1e-3, 1e-5, 1e-7);
+        for axis in 0..4 {
+            // Planes across an axis and one aslant.
+            let turned = |p: DVec3| match axis {
+                3 => DVec3::new(p.x, p.y, p.x + p.y),
+                axis => DVec3::from_array([0, 1, 2].map(|i| p[(i + axis) % 3])),
+            };
+            for flip in [false, true] {
+                let mut corners = [DVec3::ZERO, DVec3::new(8.0, 0.0, 0.0), DVec3::new(0.0, 8.0, 0.0)].map(turned);
+                if flip {
+                    corners.swap(0, 1);
+                }
+                for (at, inside) in [([2.0, 3.0], true), ([1.0, 1.0], true), ([9.0, 2.0], false), ([-1.0, 0.0], false)]
+                {
+                    let place = turned(DVec3::new(at[0], at[1], 0.0));
+                    let (found, error) = turns(&corners, place);
+                    let (wanted, _) = turns(&corners, place + moved);
+                    assert_eq!(found.abs(), if inside { 0.5 } else { 0.0 }, "{axis}");
+                    assert!(error < 1e-14, "{axis}: {error}");
+                    assert!((found - wanted).abs() < 0.01, "{axis}: {found} {wanted}");
+                }
+                for at in [[4.0, 0.0], [0.0, 0.0], [4.0, 4.0]] {
+                    assert_eq!(turns(&corners, turned(DVec3::new(at[0], at[1], 0.0))).1, f64::INFINITY);
+                }
+            }
+        }
+        let line = [DVec3::ZERO, DVec3::ONE, DVec3::splat(3.0)];
+        assert_eq!(turns(&line, DVec3::splat(2.0)), (0.0, 0.0));
+    }
+}
