@@ -1,20 +1,22 @@
 //! Meshes to signed distances on a lattice.
 
+use shapeloom_core::glam::DVec3;
 use shapeloom_core::{
-    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report, Severity, choice,
-    options, parallel,
+    Bounds, Convert, ConvertError, Converted, Deviation, Exec, FromTolerance, Options, Place, Report, Reservation,
+    Severity, choice, options, parallel,
 };
 use shapeloom_isosurface::Lattice;
 use shapeloom_mesh::TriMesh;
-use shapeloom_spatial::{WindingTree, is_closed};
+use shapeloom_spatial::is_closed;
 
 use super::band::{self, Block};
 use super::bins::Bins;
+use super::closing::closing;
+use super::clusters::Clusters;
 use super::fast_sweeping::{self, FAR};
 use super::in_cells::InCells;
-use super::open_signs::OpenSigns;
+use super::open_signs::{OpenSigns, Samples as OpenSamples};
 use super::rows::Rows;
-use super::steepness::Steepness;
 use super::thin;
 use crate::cubes;
 use crate::losses::of_mesh;
@@ -203,10 +205,14 @@ pub(crate) fn distances_in_cells(
     let cells = InCells::new(mesh, lattice, cell_size, exec)?;
     let reach = band * (1.0 + 1e-7);
     let bins = Bins::new(&cells, reach, exec)?;
+    let open = match closed {
+        true => None,
+        false => Some(Open::new(&cells, exec)?),
+    };
     exec.progress(0.1);
     let mut values = vec![0f32; lattice.samples() as usize];
     let limit = (band * band * (1.0 + 1e-6)) as f32;
-    let whole = exec.part(0.1, if closed { 0.6 } else { 0.3 });
+    let whole = exec.part(0.1, 0.6);
     let [columns, rows, slabs] = cells.dimensions;
     parallel::fill_chunks(exec, &mut values, lattice.slab_len() * bins.slabs as usize, |first, part| {
         let first_slab = (first / lattice.slab_len()) as u32;
@@ -214,7 +220,7 @@ pub(crate) fn distances_in_cells(
         let room = Block::room([columns, rows], depth);
         let _memory = exec.reserve_elements(room + part.len() as u64, size_of::<f32>())?;
         let mut block = Block::new([columns, rows], first_slab, depth, limit);
-        let mut changes = vec![0i32; if closed { part.len() } else { 0 }];
+        let mut changes = vec![0i32; part.len()];
         let along = Rows { axis: 0, offset: 0.0, count: columns, across: [0..rows, first_slab..first_slab + depth] };
         let mut left = bins.of((first_slab / bins.slabs) as usize);
         while !left.is_empty() {
@@ -222,16 +228,12 @@ pub(crate) fn distances_in_cells(
             let (members, rest) = left.split_at(cells.quick(left, reach, depth));
             left = rest;
             band::lower(&mut block, &cells, members, reach);
-            if closed {
-                for &triangle in members {
-                    along.cross(&cells.corners(triangle), |crossing| {
-                        if crossing.first_beyond < columns {
-                            let [j, k] = crossing.row.map(|index| index as usize);
-                            let row = (k - first_slab as usize) * rows as usize + j;
-                            changes[row * columns as usize + crossing.first_beyond as usize] += crossing.change;
-                        }
-                    });
-                }
+            members.iter().for_each(|&triangle| count(&along, &cells.corners(triangle), &mut changes));
+        }
+        if let Some(open) = &open {
+            for members in open.bins.of((first_slab / bins.slabs) as usize).chunks(512) {
+                exec.check()?;
+                members.iter().for_each(|&at| count(&along, &open.clusters.triangles[at as usize], &mut changes));
             }
         }
         for (row, values) in part.chunks_mut(columns as usize).enumerate() {
@@ -243,22 +245,55 @@ pub(crate) fn distances_in_cells(
                     _ => FAR,
                 };
             }
-            if closed {
-                let mut winding = 0i32;
-                let changes = &changes[row * columns as usize..(row + 1) * columns as usize];
-                for (value, change) in values.iter_mut().zip(changes) {
-                    winding += change;
-                    *value = if winding > 0 && *value > 0.0 { -*value } else { *value };
-                }
+            let mut winding = 0i32;
+            let changes = &mut changes[row * columns as usize..(row + 1) * columns as usize];
+            for (value, change) in values.iter_mut().zip(changes) {
+                winding += *change;
+                *change = winding;
+                *value = if closed && winding > 0 && *value > 0.0 { -*value } else { *value };
             }
+        }
+        if let Some(open) = &open {
+            let (columns, rows, first_slab) = (columns as usize, rows as usize, first_slab as usize);
+            let mut samples = OpenSamples { values: part, windings: &changes, columns, rows, first_slab };
+            OpenSigns { mesh: &open.mesh, closing: &open.clusters }.give(&mut samples, exec)?;
         }
         whole.progress(f64::from(first_slab + depth) / f64::from(slabs));
         Ok::<_, ConvertError>(())
     })?;
-    if !closed {
-        let tree = WindingTree::build(mesh.positions(), mesh.triangles(), &exec.part(0.3, 0.35))?;
-        let steepness = Steepness::new(&cells, exec)?;
-        OpenSigns { tree: &tree, steepness: &steepness, lattice }.give(&mut values, &exec.part(0.35, 0.6))?;
-    }
     Ok((values, closed))
+}
+
+/// Adds a triangle's crossings with rows to the changes of winding numbers from sample to sample.
+fn count(along: &Rows, corners: &[DVec3; 3], changes: &mut [i32]) {
+    let [rows, slabs] = &along.across;
+    along.cross(corners, |crossing| {
+        if crossing.first_beyond < along.count {
+            let row = (crossing.row[1] - slabs.start) as usize * rows.len() + crossing.row[0] as usize;
+            changes[row * along.count as usize + crossing.first_beyond as usize] += crossing.change;
+        }
+    });
+}
+
+/// What signs of a mesh that is not closed need.
+struct Open {
+    mesh: Vec<[DVec3; 3]>,
+    /// The triangles that close it.
+    clusters: Clusters,
+    bins: Bins,
+    _memory: Reservation,
+}
+
+impl Open {
+    fn new(cells: &InCells<'_>, exec: &Exec) -> Result<Self, ConvertError> {
+        let closing = closing(cells, exec)?;
+        let count = cells.triangles.len() + closing.len();
+        let memory = exec.reserve_elements(count as u64, size_of::<[DVec3; 3]>())?;
+        let corners_of = |triangles: &[[u32; 3]]| -> Vec<[DVec3; 3]> {
+            triangles.iter().map(|triangle| triangle.map(|vertex| cells.positions[vertex as usize])).collect()
+        };
+        let clusters = Clusters::new(corners_of(&closing), exec)?;
+        let bins = Bins::of_corners(&clusters.triangles, cells.dimensions, 0.0, exec)?;
+        Ok(Self { mesh: corners_of(cells.triangles), clusters, bins, _memory: memory })
+    }
 }

@@ -2,14 +2,16 @@
 
 mod band;
 mod bins;
+mod closing;
+mod clusters;
 mod convert;
 mod fast_sweeping;
 mod in_cells;
 mod near_triangle;
 mod open_signs;
 mod rows;
-mod steepness;
 mod thin;
+mod turns;
 
 #[cfg(test)]
 mod tests;

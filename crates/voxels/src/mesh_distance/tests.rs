@@ -116,6 +116,119 @@ fn signs_are_those_of_exact_winding_numbers() {
     }
 }
 
+/// The sum over all triangles by Van Oosterom and Strackee, written here on its own.
+fn winding_number(mesh: &TriMesh, place: DVec3) -> f64 {
+    let angle = |corners: [DVec3; 3]| {
+        let [a, b, c] = corners.map(|corner| corner - place);
+        let (x, y, z) = (a.length(), b.length(), c.length());
+        a.dot(b.cross(c)).atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+    };
+    (0..mesh.triangles().len()).map(|i| angle(mesh.corners(i))).sum::<f64>() / std::f64::consts::TAU
+}
+
+/// No sign is wrong, closed, open and messy, on finer lattices: at random samples and where winding numbers are near 1/2.
+#[test]
+fn no_sign_is_wrong() {
+    let whole = torus(60, 30);
+    let chance = |seed: u64| move |i: usize| Dice(seed ^ (i as u64) << 20).unit();
+    let (missing, flipped, half) = (chance(1), chance(2), chance(3));
+    let turned =
+        |mesh: &TriMesh| together(&[some(mesh, |i| flipped(i) > 0.15), some(mesh, |i| flipped(i) <= 0.15).reversed()]);
+    let ball = icosahedron();
+    let overlapping = together(&[whole.clone(), block(DVec3::splat(-0.7), DVec3::new(1.3, 0.6, 0.2))]);
+    for (name, mesh, least) in [
+        ("closed", whole.clone(), 100),
+        ("one hole", some(&whole, |i| i > 500), 100),
+        ("many holes", some(&whole, |i| missing(i) > 0.1), 100),
+        ("turned around", turned(&whole), 100),
+        ("half of it", some(&whole, |i| half(i) > 0.45), 1),
+        ("overlapping, with holes", turned(&some(&overlapping, |i| missing(i) > 0.05)), 100),
+        ("overlapping, closed", together(&[ball, overlapping.clone()]), 100),
+        ("soup", soup(900, 0.25, 7), 1),
+    ] {
+        let made = with_resolution(52).convert(&mesh).unwrap().value;
+        let lattice = *made.lattice();
+        let mut dice = Dice(11);
+        let (mut told, mut inside) = (0, 0);
+        for _ in 0..1500 {
+            let at = dice.next() % lattice.samples();
+            let value = values(&made)[at as usize];
+            let place = lattice.position(lattice.coordinates(at));
+            let winding = winding_number(&mesh, place);
+            if (winding - 0.5).abs() > 1e-9 && value.abs() > 1e-9 {
+                told += 1;
+                inside += u32::from(winding > 0.5);
+                assert_eq!(value < 0.0, winding > 0.5, "{name} at {place}: {value} {winding}");
+            }
+        }
+        assert!(told > 1450 && inside >= least, "{name}: {told} {inside}");
+    }
+}
+
+/// Holes in planes of samples: what closes them passes samples, some on the border between two such triangles. Another open shape
+/// beside it makes winding numbers there differ from 1/2, to either side.
+#[test]
+fn plane_holes_on_samples_are_decided() {
+    // A box with walls of many triangles, so that its holes have many corners: the lid of each side in turn is missing.
+    let (n, size) = (6u32, 6.0);
+    let mut most = 0;
+    for side in 0..6 {
+        let mut parts = Vec::new();
+        for (axis, top) in (0..6).filter(|&other| other != side).map(|other| (other % 3, other >= 3)) {
+            let corner = |i: u32, j: u32| {
+                let mut p = [0.0; 3];
+                (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) =
+                    (if top { size } else { 0.0 }, f64::from(i), f64::from(j));
+                DVec3::from_array(p)
+            };
+            let positions = (0..=n).flat_map(|i| (0..=n).map(move |j| corner(i, j))).collect();
+            let quads = (0..n).flat_map(|i| (0..n).map(move |j| i * (n + 1) + j));
+            let triangles = quads.flat_map(|a| [[a, a + n + 1, a + n + 2], [a, a + n + 2, a + 1]]).collect();
+            let wall = TriMesh::try_new(positions, triangles).unwrap();
+            parts.push(if top { wall } else { wall.reversed() });
+        }
+        for shift in [0.0, 20.0, -14.0] {
+            let cup = some(&block(DVec3::splat(shift), DVec3::splat(shift + 9.0)), |i| i % 3 > 0);
+            let mesh = together(&[parts.clone(), if shift == 0.0 { vec![] } else { vec![cup] }].concat());
+            let lattice = Lattice::along_axes([11; 3], DVec3::splat(-1.0), DVec3::splat(0.8)).unwrap();
+            let finer = Lattice::along_axes([17; 3], DVec3::splat(-1.0), DVec3::splat(0.5)).unwrap();
+            for lattice in [lattice, finer] {
+                let made = with_resolution(1).onto(&mesh, lattice, &Exec::default()).unwrap().value;
+                let mut on_lid = 0;
+                for at in 0..lattice.samples() {
+                    let (value, place) = (values(&made)[at as usize], lattice.position(lattice.coordinates(at)));
+                    let exact = generalized_winding_number(mesh.positions(), mesh.triangles(), place, &Exec::default())
+                        .unwrap();
+                    let in_plane = place[side % 3] == if side >= 3 { size } else { 0.0 };
+                    if value.abs() > 1e-9 && (exact.value - 0.5).abs() > 1e-12 {
+                        on_lid += u32::from(in_plane && value < 0.0);
+                        assert_eq!(value < 0.0, exact.value > 0.5, "{side} {shift} {place}: {value} {exact:?}");
+                    }
+                }
+                most = most.max(on_lid);
+            }
+        }
+    }
+    assert!(most > 50, "{most}");
+}
+
+/// Samples nearer to the surface than 1e-9 of a cell are on it, those farther away are not.
+#[test]
+fn samples_on_the_surface_are_zero() {
+    for (away, wanted) in [(0.0, true), (0.9e-9, true), (-0.9e-9, true), (1.1e-9, false), (-1.1e-9, false)] {
+        for open in [false, true] {
+            let solid = block(DVec3::ONE, DVec3::new(5.0 + away, 5.0, 5.0));
+            let solid = some(&solid, |i| !open || i != 4);
+            let lattice = Lattice::along_axes([7; 3], DVec3::ZERO, DVec3::ONE).unwrap();
+            let made = with_resolution(1).onto(&solid, lattice, &Exec::default()).unwrap().value;
+            let value = made.sample([5, 3, 3]);
+            assert_eq!(value == 0.0, wanted, "{away}: {value}");
+            assert!(!open || value.is_sign_positive() || value < 0.0);
+            assert!(wanted || (value < 0.0) == (away > 0.0), "{away}: {value}");
+        }
+    }
+}
+
 /// Closed forms: a box, whose distances are exact, and a ball, whose faces lie within their sagitta of it.
 #[test]
 fn a_box_has_its_closed_form() {
