@@ -65,14 +65,14 @@ options! {
 }
 
 /// The cell size for which a surface with radii of curvature of a 16th of its box's diagonal is off by the tolerance, with the
-/// sagitta h² / 8r: from a 16th to a 1024th of the diagonal.
+/// sagitta h² / 8r: from a 192nd to a 1024th of the diagonal.
 impl<F: Field + ?Sized> FromTolerance<F> for SampledSurface {
     fn from_tolerance(source: &F, tolerance: f64) -> Self {
         let find = || find_bounds(source, &Exec::default()).map_or(Aabb::EMPTY, |found| found.bounds);
         let found = source.extent().unwrap_or_else(find);
         let diagonal = if found.is_empty() { 1.0 } else { found.diagonal() };
         let size = (tolerance * diagonal / 2.0).sqrt();
-        Self::new(if size.is_nan() { size } else { size.clamp(diagonal / 1024.0, diagonal / 16.0) })
+        Self::new(if size.is_nan() { size } else { size.clamp(diagonal / 1024.0, diagonal / 192.0) })
     }
 }
 

@@ -169,14 +169,15 @@ mod tests {
         for set in sets {
             let some: Vec<u32> = (0..set.len() as u32).collect();
             for _ in 0..60 {
-                let mut places = [[0.0; LANES]; 3];
-                for lane in 0..LANES {
-                    let place = if lane < 4 { dice.point() } else { DVec3::splat(0.33) + dice.point() * 0.01 };
-                    (0..3).for_each(|axis| places[axis][lane] = place[axis]);
-                }
+                let lanes: [DVec3; LANES] =
+                    std::array::from_fn(
+                        |lane| {
+                            if lane < 4 { dice.point() } else { DVec3::splat(0.33) + dice.point() * 0.01 }
+                        },
+                    );
+                let places = [0, 1, 2].map(|axis| lanes.map(|place| place[axis]));
                 let (found, errors) = turns_around(&set, &some, &places);
-                for lane in 0..LANES {
-                    let place = DVec3::new(places[0][lane], places[1][lane], places[2][lane]);
+                for (lane, place) in lanes.into_iter().enumerate() {
                     let positions = set.as_flattened();
                     let indices: Vec<[u32; 3]> = some.iter().map(|&i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
                     let exact = generalized_winding_number(positions, &indices, place, &Exec::default()).unwrap();
