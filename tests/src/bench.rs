@@ -35,6 +35,7 @@ fn every_task_prints_lines_of_json() {
         let lines = String::from_utf8(out).expect("UTF-8");
         let expected = match task {
             Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge | Task::Delaunay2d => 1,
+            Task::FieldEval | Task::IntervalEval | Task::ImplicitSurface => 2,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
             Task::SurfaceNets => 3,
             Task::Isosurface => 4,
@@ -50,7 +51,9 @@ fn every_task_prints_lines_of_json() {
         for line in lines.lines() {
             let found: serde_json::Value = serde_json::from_str(line).expect("JSON");
             assert_eq!(found["task"], name);
-            for key in ["input", "wall_s", "cpu_s", "threads", "triangles"] {
+            let of_triangles = !matches!(task, Task::FieldEval | Task::IntervalEval);
+            let size = if of_triangles { "triangles" } else { "steps" };
+            for key in ["input", "wall_s", "cpu_s", "threads", size] {
                 assert!(!found[key].is_null(), "{key} is missing: {line}");
             }
         }

@@ -8,7 +8,7 @@ use shapeloom_implicit::{Program, Region, SampledSurface, Tree};
 use crate::{Outcome, Setting, measure};
 
 pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
-    let side = f64::from(setting.size.clamp(2, 512));
+    let side = f64::from(setting.size.clamp(2, 256));
     // Files of fidget's, extruded where they are plane by the region they are looked at in.
     let region = Aabb::from_corners(DVec3::splat(-1.0), DVec3::ONE);
     let mut fields = vec![("a plate with 1000 parts".to_owned(), parts()?)];
