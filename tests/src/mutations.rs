@@ -96,6 +96,20 @@ const BY_HAND: [(&str, &str); 26] = [
         "vtk",
         "# vtk DataFile Version 3.0\nbits\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4 3 3\nSPACING 1 1 1\nORIGIN 0 0 0\nCELL_DATA 12\nSCALARS cells bit 1\nLOOKUP_TABLE default\n\u{3}p\nMETADATA\n",
     ),
+    (
+        "shape",
+        "# a part\nplate = rounded_box(6, 4, 1, radius: 0.25);\nhole = cylinder(0.5, 2).move(1, 2 * 0.5, 0);\nbounds(-4, -4, -4, 4, 4, 4);\nsmooth_union(plate \\ hole, sphere(1) & ~plane(0, 0, 1), radius: 0.3).rotate_x(30 deg) | x ^ 2 + y - 1\n",
+    ),
+    (
+        "shape",
+        "metaballs(0.5, 1e-7, 0, 0, 0, 2, 1, 1, 0, 0, 2, 1).displace(sin(x) * 0.1).repeat(4, 0, 4, copies_x: 2)\n",
+    ),
+    ("vm", "# a ball\nx var-x\ny var-y\nxx square x\nyy mul y y\ns add xx yy\none const 1e0\nout sub s one\nm max out x\n"),
+    (
+        "pdb",
+        "TITLE     WATER\nATOM      1  N   MET A   1      38.198  19.582  28.998  1.00 54.11           N  \nHETATM    2  O   HOH A   2      37.000  19.000  28.000  1.00 50.00           O  \nEND\n",
+    ),
+    ("molecule-xyz", "3\nwater\nO 0 0 0.1\nH 0.7 0.5 -0.4\nh -0.7 0.5 -4e-1 0.5\n"),
 ];
 
 /// Words that break readers.
@@ -141,6 +155,7 @@ fn shapes() -> Vec<Shape> {
         Shape { parts: vec![Part::new(graph), Part::new(PointCloud::new(vec![DVec3::ONE; 3]))], ..Shape::default() },
         heights(),
         Shape::new(Part::new(shapes::random_cells())),
+        Shape::new(Part::new(shapes::part())),
         Shape::new(Part::new(numbers(false))),
         Shape {
             units: Some(Units::MILLIMETERS),

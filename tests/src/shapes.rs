@@ -136,6 +136,18 @@ pub fn tagged_triangles() -> TriMesh {
     mesh
 }
 
+/// A block with a hole and a ring, joined softly.
+pub fn part() -> Implicit {
+    let block = Tree::cuboid(2.0, 1.5, 1.0).difference(Tree::cylinder(0.4, 2.0));
+    Implicit::new(block.smooth_union(Tree::torus(0.9, 0.2).named("ring"), 0.3)).expect("sound parameters")
+}
+
+/// A ball that its box cuts.
+fn ball() -> Implicit {
+    let region = Aabb::from_corners(DVec3::new(-1.0, -1.2, -1.2), DVec3::new(0.5, 1.2, 1.2));
+    Implicit::new(Tree::sphere(1.0)).expect("a sound radius").within(region).expect("a sound box")
+}
+
 /// Small shapes of a kind, with what each is called.
 pub fn of_kind(kind: Kind) -> Vec<(&'static str, Geometry)> {
     let cube = || Platonic::new(Solid::Dodecahedron).mesh(&Exec::default()).expect("a dodecahedron").value;
@@ -162,6 +174,7 @@ pub fn of_kind(kind: Kind) -> Vec<(&'static str, Geometry)> {
             ("nothing", GeometricGraph::default().into()),
         ],
         Kind::HeightField => vec![("hills", hills().into())],
+        Kind::Implicit => vec![("part with a hole", part().into()), ("ball in a box", ball().into())],
         Kind::VoxelGrid => vec![("cut ball", cut_ball().into()), ("random cells", random_cells().into())],
         Kind::PolyMesh => vec![
             ("tagged cylinder", tagged_polygons().into()),
