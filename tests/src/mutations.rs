@@ -104,7 +104,10 @@ const BY_HAND: [(&str, &str); 26] = [
         "shape",
         "metaballs(0.5, 1e-7, 0, 0, 0, 2, 1, 1, 0, 0, 2, 1).displace(sin(x) * 0.1).repeat(4, 0, 4, copies_x: 2)\n",
     ),
-    ("vm", "# a ball\nx var-x\ny var-y\nxx square x\nyy mul y y\ns add xx yy\none const 1e0\nout sub s one\nm max out x\n"),
+    (
+        "vm",
+        "# a ball\nx var-x\ny var-y\nxx square x\nyy mul y y\ns add xx yy\none const 1e0\nout sub s one\nm max out x\n",
+    ),
     (
         "pdb",
         "TITLE     WATER\nATOM      1  N   MET A   1      38.198  19.582  28.998  1.00 54.11           N  \nHETATM    2  O   HOH A   2      37.000  19.000  28.000  1.00 50.00           O  \nEND\n",

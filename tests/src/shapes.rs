@@ -1,7 +1,8 @@
 //! Shapes of every kind to try things on.
 
 use shapeloom::core::glam::{DMat3, DVec2, DVec3};
-use shapeloom::core::{Affine, Exec};
+use shapeloom::core::{Aabb, Affine, Exec};
+use shapeloom::implicit::{Implicit, Tree};
 use shapeloom::io::{ReadContext, format_by_id, read};
 use shapeloom::isosurface::Lattice;
 use shapeloom::mesh::primitives::{Cylinder, Platonic, Solid, Torus};
