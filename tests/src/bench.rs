@@ -42,10 +42,7 @@ fn every_task_prints_lines_of_json() {
             Task::Closest | Task::Onering | Task::Heightfield | Task::MeshToSdf | Task::Redistance => 2,
             Task::Read | Task::Write | Task::Rays => 5,
             Task::Octree => 7,
-            Task::FieldEval => 91,
-            Task::IntervalEval => 92,
-            Task::ImplicitSurface => 93,
-            Task::Blobs => 94,
+            Task::Blobs => 4,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");
         for line in lines.lines() {

@@ -15,7 +15,7 @@ use crate::shapes;
 use crate::support::{Dice, data, root};
 
 /// Inputs of each format by hand, beside those that the writers make.
-const BY_HAND: [(&str, &str); 26] = [
+const BY_HAND: [(&str, &str); 31] = [
     (
         "obj",
         "mtllib a.mtl\no a\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 1 1 1\nvt 0 0\nvn 0 0 1\ng b c\nusemtl m\ns 1\nf 1/1/1 2/1/1 3/1/1 4/1/1\nf -4//1 -3//1 \\\n-2//1\nl 1 2 3\np 1 2\n",
