@@ -263,8 +263,11 @@ impl Clusters {
                 }
             }
         }
-        let single: Vec<Cluster> = triangles.iter().map(Cluster::of_triangle).collect();
-        exec.check()?;
+        let mut single = Vec::with_capacity(len);
+        for part in triangles.chunks(4096) {
+            exec.check()?;
+            single.extend(part.iter().map(Cluster::of_triangle));
+        }
         let mut nodes = vec![Cluster::EMPTY; (2usize << levels) - 1];
         for level in (0..=levels).rev() {
             for part in 0..1usize << level {

@@ -4,6 +4,7 @@ use shapeloom_core::glam::DVec3;
 use shapeloom_core::{ConvertError, Exec};
 
 use super::clusters::{Clusters, LANES as CLUSTERS, Taylor, add_all, look};
+use super::in_cells::InCells;
 use super::near_triangle::LANES;
 use super::turns::{Places, turns, turns_around};
 
@@ -23,7 +24,7 @@ const TOLERANCES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 /// of the closing triangles alone is taken, which is smooth away from them and less than 1/2 where holes are far.
 pub(super) struct OpenSigns<'a> {
     /// The triangles of the mesh, for samples on the border of closing triangles.
-    pub mesh: &'a [[DVec3; 3]],
+    pub mesh: &'a InCells<'a>,
     pub closing: &'a Clusters,
 }
 
@@ -68,6 +69,8 @@ struct Work {
     far: Vec<u32>,
     /// Samples that a tolerance leaves open.
     open: Vec<[u32; 3]>,
+    /// Which tolerance is tried first.
+    first_step: usize,
 }
 
 /// The part of the lists of [`Work`] that are a cube's.
@@ -104,7 +107,8 @@ impl OpenSigns<'_> {
 
     /// Settles the open samples of a cube.
     fn cube(&self, work: &mut Work, samples: &mut Samples<'_>, exec: &Exec) -> Result<(), ConvertError> {
-        for tolerance in TOLERANCES {
+        let (all, first) = (work.open.len(), work.first_step);
+        for (step, &tolerance) in TOLERANCES.iter().enumerate().skip(first) {
             if work.open.is_empty() {
                 return Ok(());
             }
@@ -114,14 +118,25 @@ impl OpenSigns<'_> {
             work.near.push(0);
             let cube = Cube { side: CUBE as u32, samples: 0, near: 0 };
             self.settle(cube, None, tolerance, work, samples, exec)?;
+            // Cubes side by side are alike: what was in vain for one is not tried for the next.
+            if step == first {
+                if 2 * work.open.len() > all && step < 2 {
+                    work.first_step += 1;
+                } else if 16 * work.open.len() < all && step > 0 {
+                    work.first_step -= 1;
+                }
+            }
         }
         for at in 0..work.open.len() {
-            exec.check()?;
             let sample = work.open[at];
             let place = samples.place(sample);
             let whole = f64::from(samples.windings[samples.index(sample)]);
-            let (winding, error) = sum(&self.closing.triangles, place);
-            let winding = if error < 0.5 { whole - winding } else { sum(self.mesh, place).0 };
+            let closing = &self.closing.triangles;
+            let (winding, error) = sum(closing.len(), |at| closing[at], place, exec)?;
+            let winding = match error < 0.5 {
+                true => whole - winding,
+                false => sum(self.mesh.triangles.len(), |at| self.mesh.corners(at as u32), place, exec)?.0,
+            };
             samples.give(sample, winding > 0.5);
         }
         Ok(())
@@ -192,8 +207,7 @@ impl OpenSigns<'_> {
                 samples.give(sample, f64::from(whole) - nearest > 0.5);
             }
         } else if is_last {
-            exec.check()?;
-            self.each(&work.samples[cube.samples..], &work.near[end..], (&far, place), &mut work.open, samples);
+            self.each(&work.samples[cube.samples..], &work.near[end..], (&far, place), &mut work.open, samples, exec)?;
         } else {
             let half = cube.side / 2;
             let last = work.samples.len();
@@ -223,8 +237,10 @@ impl OpenSigns<'_> {
         (far, about): (&Taylor, DVec3),
         open: &mut Vec<[u32; 3]>,
         samples: &mut Samples<'_>,
-    ) {
+        exec: &Exec,
+    ) -> Result<(), ConvertError> {
         for eight in own.chunks(LANES) {
+            exec.check()?;
             // Lanes without a sample repeat the first.
             let lanes: [DVec3; LANES] =
                 std::array::from_fn(|lane| samples.place(*eight.get(lane).unwrap_or(&eight[0])));
@@ -240,18 +256,27 @@ impl OpenSigns<'_> {
                 }
             }
         }
+        Ok(())
     }
 }
 
 /// The winding number of all triangles, with compensated summation (Neumaier 1974), and what rounding may change.
-fn sum(triangles: &[[DVec3; 3]], place: DVec3) -> (f64, f64) {
+fn sum(
+    count: usize,
+    corners: impl Fn(usize) -> [DVec3; 3],
+    place: DVec3,
+    exec: &Exec,
+) -> Result<(f64, f64), ConvertError> {
     let (mut sum, mut lost, mut error) = (0.0f64, 0.0, 0.0);
-    for triangle in triangles {
-        let (value, wrong) = turns(triangle, place);
+    for at in 0..count {
+        if at % 4096 == 0 {
+            exec.check()?;
+        }
+        let (value, wrong) = turns(&corners(at), place);
         let next = sum + value;
         lost += if sum.abs() >= value.abs() { (sum - next) + value } else { (value - next) + sum };
         sum = next;
         error += wrong;
     }
-    (sum + lost, error)
+    Ok((sum + lost, error))
 }
