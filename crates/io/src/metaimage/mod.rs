@@ -7,6 +7,8 @@
 
 mod header;
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 use shapeloom_shape::Kind;

@@ -203,6 +203,27 @@ fn raw_samples_are_read_as_options_say() {
     assert!(words.contains("9 bytes without a header, and no option dimensions"), "{words}");
 }
 
+#[test]
+fn raw_samples_have_the_sign_of_their_type() {
+    for (scalar, signed) in [
+        (ScalarType::I8, -2.0),
+        (ScalarType::U8, 254.0),
+        (ScalarType::I16, -2.0),
+        (ScalarType::U16, 65534.0),
+        (ScalarType::I32, -2.0),
+        (ScalarType::U32, 4_294_967_296.0),
+        (ScalarType::I64, -2.0),
+        (ScalarType::U64, 18_446_744_073_709_551_616.0),
+    ] {
+        let options = ReadOptions { dimensions: "1x1x1".into(), scalar, ..ReadOptions::new() };
+        let bytes = [0xfe, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff];
+        let context = ReadContext { options, ..ReadContext::named("raw") };
+        let read = read(&bytes, format_by_id("raw").unwrap(), &context).unwrap();
+        // Up to rounding to single precision.
+        assert_eq!(grid(&read.shape).samples().get(0), signed, "{scalar:?}");
+    }
+}
+
 /// A slice of a run, of bytes as they are, and of both.
 #[test]
 fn run_lengths_are_unpacked() {
@@ -213,4 +234,7 @@ fn run_lengths_are_unpacked() {
     assert!(read.findings.is_empty());
     assert_eq!(grid(&read.shape).samples(), &Samples::U8(b"\x07\x07\x07\x07\x07\x07abcddd".to_vec()));
     assert_eq!(grid(&read.shape).lattice().spacing(), DVec3::new(1.0, 1.0, 2.0));
+    let plain = again(b"11111\n3 2 1 8 \n1.0 1.0 2.0\n1 6 0 0\n1 1 XRGBabcdef", "slc");
+    assert!(plain.findings.is_empty());
+    assert_eq!(grid(&plain.shape).samples(), &Samples::U8(b"abcdef".to_vec()));
 }

@@ -108,6 +108,17 @@ fn samples_of_cells_are_their_middles() {
 }
 
 #[test]
+fn a_piece_of_a_whole_is_where_its_extent_says() {
+    let file = "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 9 0 9 0 9\" Origin=\"1 0 0\" Spacing=\"2 1 1\">\
+                <Piece Extent=\"3 4 5 5 6 6\"><PointData><DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 2</DataArray>\
+                </PointData></Piece></ImageData></VTKFile>";
+    let read = attempt(file.as_bytes()).unwrap();
+    assert_eq!(grid(&read).lattice().dimensions(), [2, 1, 1]);
+    assert_eq!(grid(&read).lattice().position([1, 0, 0]), DVec3::new(9.0, 5.0, 6.0));
+    assert_eq!(read.findings.iter().map(|finding| finding.code).collect::<Vec<_>>(), ["W-vti-piece"]);
+}
+
+#[test]
 fn what_is_not_read_is_named() {
     let file = |attributes: &str, array: &str| {
         format!(

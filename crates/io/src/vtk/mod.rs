@@ -6,6 +6,8 @@
 //! the shape; of several comments the first is written.
 
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 use shapeloom_shape::Kind;
