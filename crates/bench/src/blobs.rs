@@ -25,7 +25,8 @@ pub(crate) fn run(setting: &Setting) -> Result<Vec<Outcome>, String> {
         let slabs = FieldSlabs::new(&blobs, lattice);
         let (inside, times) = measure::fastest(setting.runs, || sampled(&slabs, side))?;
         let rate = f64::from(side).powi(3) / times.cpu;
-        let figures = [("inside", json!(inside)), ("samples", json!(lattice.samples())), ("samples_per_cpu_s", json!(rate))];
+        let figures =
+            [("inside", json!(inside)), ("samples", json!(lattice.samples())), ("samples_per_cpu_s", json!(rate))];
         outcomes.push(outcome(&name, "lattice", times, figures));
         let (worst, times) = measure::fastest(1, || Ok(brute_force(&blobs, &lattice)))?;
         let rate = f64::from(BRUTE_FORCE) / times.cpu;

@@ -80,7 +80,7 @@ pub(super) fn values(sum: &Sum, threshold: f32, origin: DVec3, points: [&[f32]; 
 /// The terms that may reach any of the points; false where they are so many that fewer points should ask together.
 fn gather(sum: &Sum, origin: DVec3, points: [&[f32]; 3], near: &mut Vec<Near>) -> bool {
     near.clear();
-    let ends = points.map(|along| bounds_of(along));
+    let ends = points.map(bounds_of);
     let lo = DVec3::from_array(ends.map(|(lo, _)| f64::from(lo)));
     let hi = DVec3::from_array(ends.map(|(_, hi)| f64::from(hi)));
     // Room for the rounding of centres relative to the origin, and of the points themselves.

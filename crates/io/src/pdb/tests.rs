@@ -140,7 +140,8 @@ fn entries_of_the_data_bank_have_their_atoms() {
         let Some(path) = crate::test_data::shared_data(&format!("molecules/{name}.pdb")) else { continue };
         let bytes = std::fs::read(path).unwrap();
         let read = pdb(&bytes).unwrap();
-        let left = read.findings.iter().find(|finding| finding.code == "W-pdb-alternate").map_or(0, |found| found.count);
+        let left =
+            read.findings.iter().find(|finding| finding.code == "W-pdb-alternate").map_or(0, |found| found.count);
         assert_eq!(read.molecule.atoms.len() as u64 + left, records, "{name}");
         assert!(alternates.is_none_or(|count| count == left));
         let count = |symbol: &str| symbols(&read).iter().filter(|known| **known == symbol).count();
