@@ -44,7 +44,7 @@ fn read(text: &[u8], context: &ReadContext) -> Result<ReadMolecule, ReadError> {
     let title = lossy(&comment[..comment.len().min(TITLE)], Place::line(2), &mut findings).into_owned();
     let mut atoms = Atoms::new(context, "E-molecule-limit");
     while (atoms.len() as u64) < count {
-        if atoms.len() % 1024 == 0 {
+        if atoms.len().is_multiple_of(1024) {
             context.exec.check()?;
             context.exec.progress(atoms.len() as f64 / count as f64);
         }
@@ -65,7 +65,7 @@ fn read(text: &[u8], context: &ReadContext) -> Result<ReadMolecule, ReadError> {
         atoms.push(Atom { element, position }, Place::line(line.number))?;
     }
     while let Some(line) = lines.next_line()? {
-        if line.number % 1024 == 0 {
+        if line.number.is_multiple_of(1024) {
             context.exec.check()?;
         }
         if !line.bytes.trim_ascii().is_empty() {
