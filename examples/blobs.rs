@@ -8,7 +8,6 @@ use shapeloom::core::{Convert, Field};
 use shapeloom::implicit::{AtomBlobs, Blob, BlobForm, Blobs};
 use shapeloom::io::{ReadContext, looks_like_xyz_molecule, read_xyz_molecule};
 use shapeloom::isosurface::{FieldSlabs, Lattice, ManifoldSurfaceNets};
-use shapeloom::mesh::{Domain, NORMAL};
 use shapeloom::render::{Picture, Scene, SceneMesh};
 use shapeloom_examples::Output;
 
@@ -24,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let blobs = molecule.blobs(&AtomBlobs { scale, blobbiness, ..AtomBlobs::default() })?;
         println!("scale {scale}, blobbiness {blobbiness}: value in the middle {:.3}", blobs.value(DVec3::ZERO));
         let at = DVec3::new(10.0 * (place as f64 - 1.0), 0.0, 4.0);
-        scene.surfaces.push(surface(&blobs, at, [0.45, 0.55, 0.65])?);
+        scene.surfaces.push(surface(&blobs, at, 1.0, [0.45, 0.55, 0.65])?);
     }
 
     let pair = |form, threshold, first, second| {
@@ -41,23 +40,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (place, blobs) in forms.iter().enumerate() {
         println!("{}: value between the two {:.3}", blobs.form().name(), blobs.value(DVec3::ZERO));
         let at = DVec3::new(7.5 * (place as f64 - 1.5), 0.0, -4.2);
-        scene.surfaces.push(surface(blobs, at, [0.75, 0.55, 0.35])?);
+        scene.surfaces.push(surface(blobs, at, 1.7, [0.75, 0.55, 0.35])?);
     }
     println!("{}", output.draw("blobs", &scene, [0.0, 0.0], Picture::new())?.display());
     Ok(())
 }
 
-/// The surface of blobs, moved and coloured.
-fn surface(blobs: &Blobs, shift: DVec3, color: [f32; 3]) -> Result<SceneMesh, Box<dyn Error>> {
+/// The surface of blobs, scaled, moved and coloured, smooth by the normals of the field.
+fn surface(blobs: &Blobs, shift: DVec3, scale: f64, color: [f32; 3]) -> Result<SceneMesh, Box<dyn Error>> {
     let bounds = blobs.bounds();
-    let spacing = bounds.size().max_element() / 90.0;
+    let spacing = bounds.size().max_element() / 60.0;
     let dimensions = (bounds.size() / spacing).to_array().map(|length| length.ceil() as u32 + 1);
     let lattice = Lattice::along_axes(dimensions, bounds.min, DVec3::splat(spacing))?;
-    let nets = ManifoldSurfaceNets { normals: true, ..ManifoldSurfaceNets::new() };
-    let mesh = nets.convert(&FieldSlabs::new(blobs, lattice))?.value;
+    let mesh = ManifoldSurfaceNets::new().convert(&FieldSlabs::new(blobs, lattice))?.value;
     println!("  {} triangles", mesh.triangles().len());
-    let column = mesh.attribute(Domain::Vertex, NORMAL).ok_or("no normals")?;
-    let normals = mesh.triangles().as_flattened().iter().map(|&vertex| column.vector(vertex as usize)).collect();
-    let positions = mesh.positions().iter().map(|&position| position + shift).collect();
+    let smooth: Vec<DVec3> = mesh.positions().iter().map(|&p| blobs.gradient(p).normalize_or_zero()).collect();
+    let normals = mesh.triangles().as_flattened().iter().map(|&vertex| smooth[vertex as usize]).collect();
+    let positions = mesh.positions().iter().map(|&position| position * scale + shift).collect();
     Ok(SceneMesh { normals: Some(normals), color, ..SceneMesh::new(positions, mesh.triangles().to_vec()) })
 }

@@ -294,6 +294,30 @@ fn slopes_stay_below_the_stated_constant_and_come_near_it() {
     }
 }
 
+/// Blobs that lie within one cell of the coarse lattice count there together, and nowhere else.
+#[test]
+fn slopes_add_up_in_the_cell_where_blobs_meet() {
+    let places = [0.0, 8.0, 3.3, 3.3, 3.3, 3.3].map(|x| Blob::new(DVec3::splat(x), 0.01, 1.0));
+    let blobs = Blobs::try_new(BlobForm::Metaballs, 0.5, places.to_vec()).unwrap();
+    // 2 α/R each.
+    assert!((blobs.lipschitz().unwrap() / 800.0 - 1.0).abs() < 1e-9, "{:?}", blobs.lipschitz());
+}
+
+/// A cutoff so coarse that single precision sees what is taken off.
+#[test]
+fn batches_are_cut_off_as_points_are() {
+    let blobs = (0..3).map(|i| Blob::new(DVec3::X * f64::from(i), 1.5, 1.0)).collect();
+    let blobs = Blobs::try_new_with(BlobForm::Blinn, 0.8, blobs, 0.1, &Exec::default()).unwrap();
+    let x: Vec<f32> = (0..400).map(|i| i as f32 * 0.02 - 3.0).collect();
+    let mut out = vec![0.0; 400];
+    blobs.values(DVec3::ZERO, &x, &[0.5; 400], &[0.0; 400], &mut out);
+    for (x, value) in x.iter().zip(out) {
+        let exact = blobs.value(DVec3::new(f64::from(*x), 0.5, 0.0));
+        assert!((f64::from(value) - exact).abs() < 2e-6, "{x} {value} {exact}");
+    }
+    assert_eq!(blobs.value(DVec3::X * 9.0), 0.8);
+}
+
 #[test]
 fn the_box_holds_all_that_is_inside() {
     let radius = 1.3;

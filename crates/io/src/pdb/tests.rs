@@ -16,7 +16,7 @@ ATOM      1  N   SER A  17     -16.074  -6.064  -3.588  1.00  0.00           N
 ATOM      2  CA ASER A  17      -1.500   2.000   3.250  0.60  0.00           C  
 ATOM      3  CA BSER A  17      -9.500   2.000   3.250  0.40  0.00           C  
 ATOM      4  CB CSER A  18       1.000   2.000   3.000  0.40  0.00           C1+
-HETATM    5 CA    CA A 101      10.000  20.000  30.000  1.00  0.00          CA  
+HETATM    5 CA    CA A 101    -910.125-120.250-130.500  1.00  0.00          CA  
 TER
 END
 ";
@@ -38,6 +38,7 @@ fn columns_are_read_and_one_location_of_each_residue_kept() {
         assert_eq!(symbols(&read), ["N", "C", "C", "Ca"]);
         assert_eq!(read.molecule.atoms[0].position, DVec3::new(-16.074, -6.064, -3.588));
         assert_eq!(read.molecule.atoms[1].position, DVec3::new(-1.5, 2.0, 3.25));
+        assert_eq!(read.molecule.atoms[3].position, DVec3::new(-910.125, -120.25, -130.5));
         let codes: Vec<(&str, u64)> = read.findings.iter().map(|finding| (finding.code, finding.count)).collect();
         assert_eq!(codes, [("W-pdb-alternate", 1)]);
     }
@@ -91,7 +92,7 @@ fn faults_have_line_and_column() {
         (with("  -6.064", "  -6,064"), "E-pdb-number", at(4, 39)),
         (with("  -6.064", "        "), "E-pdb-number", at(4, 39)),
         (with("  -3.588", "     nan"), "E-pdb-finite", at(4, 47)),
-        (with("  30.000", "  1e9999"), "E-pdb-finite", at(8, 47)),
+        (with("-130.500", "  1e9999"), "E-pdb-finite", at(8, 47)),
         (with("   2.000   3.250  0.60  0.00           C  ", ""), "E-pdb-row", Place::line(5)),
         ("HEADER\nEND\n".into(), "E-pdb-truncated", Place::line(3)),
         (String::new(), "E-pdb-truncated", Place::line(1)),

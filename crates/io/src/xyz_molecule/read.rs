@@ -65,7 +65,7 @@ fn read(text: &[u8], context: &ReadContext) -> Result<ReadMolecule, ReadError> {
         atoms.push(Atom { element, position }, Place::line(line.number))?;
     }
     while let Some(line) = lines.next_line()? {
-        if line.number % 1024 == 0 {
+        if line.number.is_multiple_of(1024) {
             context.exec.check()?;
         }
         if !line.bytes.trim_ascii().is_empty() {
