@@ -63,7 +63,9 @@ pub fn classify_regularised<F: Field + ?Sized>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::laws::Numbers;
     use crate::{SetOperation, Tree};
+    use shapeloom_core::{Affine, AxisAngle};
 
     fn place(tree: &Tree, x: f64, y: f64) -> PointPlace {
         let program = tree.compile().unwrap();
@@ -109,16 +111,18 @@ mod tests {
 
     #[test]
     fn rounding_makes_no_interior() {
-        // As 0.1 + 0.2 is not 0.3, faces that should meet lie 1e-16 apart or within one another, less than values are rounded by.
+        // A turned box and the space beyond its face: values on the face are 1e-16 above or below 0.
+        let mut numbers = Numbers::new(41);
         let mut below = 0;
-        for (first, second) in (1..40).map(|i| (0.1 * f64::from(i), 0.7 + 0.03 * f64::from(i))) {
-            let a = Tree::cuboid(first, 1.0, 1.0).translate(first / 2.0, 0.0, 0.0);
-            let b = Tree::cuboid(second, 1.0, 1.0).translate(first + second / 2.0, 0.0, 0.0);
-            let both = a.intersection(b);
-            for x in [first.next_down(), first, first.next_up()] {
-                below += usize::from(both.compile().unwrap().value(DVec3::X * x) < 0.0);
-                assert_eq!(place(&both, x, 0.1), PointPlace::Outside, "{first} {second}");
-            }
+        for _ in 0..400 {
+            let turn = AxisAngle::new(DVec3::Z, numbers.within(0.0, 3.0)).unwrap();
+            let outward = Affine::from_rotation(turn).vector(DVec3::X);
+            let beyond = Tree::plane(outward * -3.7, -0.5);
+            let program = Tree::cuboid(1.0, 1.0, 1.0).rotate(turn).intersection(beyond).compile().unwrap();
+            let on_face = DVec3::new(0.5, numbers.within(-0.4, 0.4), numbers.within(-0.4, 0.4));
+            let point = Affine::from_rotation(turn).point(on_face);
+            below += usize::from(program.value(point) < 0.0);
+            assert_eq!(classify_regularised(&program, point, 0.01).unwrap().place, PointPlace::Outside);
         }
         assert!(below > 0);
     }
