@@ -241,12 +241,10 @@ impl OpenSigns<'_> {
     ) -> Result<(), ConvertError> {
         for eight in own.chunks(LANES) {
             exec.check()?;
-            let mut places: Places = [[0.0; LANES]; 3];
-            for lane in 0..LANES {
-                // Lanes without a sample repeat the first.
-                let place = samples.place(*eight.get(lane).unwrap_or(&eight[0]));
-                (0..3).for_each(|axis| places[axis][lane] = place[axis]);
-            }
+            // Lanes without a sample repeat the first.
+            let mut lanes = [samples.place(eight[0]); LANES];
+            lanes.iter_mut().zip(eight).for_each(|(lane, &sample)| *lane = samples.place(sample));
+            let places: Places = [0, 1, 2].map(|axis| lanes.map(|place| place[axis]));
             let (windings, errors) = turns_around(&self.closing.triangles, near, &places);
             for (lane, &sample) in eight.iter().enumerate() {
                 let whole = f64::from(samples.windings[samples.index(sample)]);
