@@ -48,6 +48,7 @@ mod query_laws;
 mod regressions;
 mod round_trips;
 mod same_bits;
+mod sampled_surface;
 mod self_intersection;
 mod shapes;
 mod structures;
