@@ -50,6 +50,7 @@ mod regressions;
 mod regularised_sets;
 mod round_trips;
 mod same_bits;
+mod sampled_surface;
 mod self_intersection;
 mod shapes;
 mod structures;

@@ -167,26 +167,6 @@ fn measures_converge_with_the_square_of_the_cell() {
 }
 
 #[test]
-fn meshes_are_closed_manifolds_by_the_judge() {
-    let gyroid = {
-        let wave = |a: Tree, b: Tree| (a * 4.0).unary(crate::Unary::Sine) * (b * 4.0).unary(crate::Unary::Cosine);
-        wave(Tree::x(), Tree::y()) + wave(Tree::y(), Tree::z()) + wave(Tree::z(), Tree::x())
-    };
-    let region = Region::Box(Aabb::from_corners(DVec3::splat(-1.0), DVec3::ONE));
-    for (field, region) in
-        [(spread(), Region::Auto), (program(gyroid.clone()), region), (program(gyroid.shell(0.3)), region)]
-    {
-        for method in [SurfaceMethod::SurfaceNets, SurfaceMethod::MarchingCubes] {
-            let mesh = SampledSurface { region, method, ..SampledSurface::new(0.07) }.convert(&field).unwrap().value;
-            let topology = shapeloom_judge::Topology::of(&mesh, &Exec::default()).unwrap();
-            assert!(mesh.triangles().len() > 1000 && mesh.volume() > 0.0);
-            assert_eq!(topology.boundary.edges().len(), 0, "{method:?}");
-            assert!(topology.non_manifold_edges.is_empty() && topology.non_manifold_vertices.is_empty(), "{method:?}");
-        }
-    }
-}
-
-#[test]
 fn a_box_keeps_its_edges_by_dual_contouring() {
     let tree = Tree::cuboid(1.0, 1.4, 0.6).translate(0.013, 0.007, 0.031);
     let (volume, area, mesh) = errors(&tree, 0.09, SurfaceMethod::DualContouring, 0.84, 2.0 * (1.4 + 0.6 + 0.84));
