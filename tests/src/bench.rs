@@ -37,12 +37,11 @@ fn every_task_prints_lines_of_json() {
             Task::Tessellate | Task::Topology | Task::SelfIntersection | Task::Halfedge | Task::Delaunay2d => 1,
             Task::FieldEval | Task::IntervalEval | Task::ImplicitSurface => 2,
             Task::Winding | Task::SignedDistance | Task::Hausdorff => 2,
-            Task::SurfaceNets => 3,
-            Task::Isosurface => 4,
+            Task::Isosurface => 6,
             Task::Closest | Task::Onering | Task::Heightfield | Task::MeshToSdf | Task::Redistance => 2,
             Task::Read | Task::Write | Task::Rays => 5,
             Task::Octree => 7,
-            Task::Blobs => 4,
+            Task::Blobs | Task::SurfaceNets => 4,
         };
         assert_eq!(lines.lines().count(), expected, "{lines}");
         for line in lines.lines() {
