@@ -17,7 +17,7 @@ pub(super) fn shape(input: &[u8], context: &ReadContext) -> Result<ReadShape, Re
     let files = Files { context };
     let parsed = parse(input, Some(&files)).map_err(|error| {
         let place = Place::Line { line: error.line, column: Some(error.column) };
-        fault(&error, error.problem.to_string(), place)
+        fault(&error, error.problem.to_string(), place).advice("docs/formats/shape_language.md describes the language")
     })?;
     finished(parsed.tree, parsed.bounds, context)
 }
