@@ -46,8 +46,10 @@ fn outcome<const N: usize>(
     times: measure::Times,
     figures: [(&str, serde_json::Value); N],
 ) -> Outcome {
+    // Every task says how many triangles came of it.
+    let none = [("triangles", json!(0))];
     let figures: Map<String, serde_json::Value> =
-        figures.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+        none.into_iter().chain(figures).map(|(key, value)| (key.to_owned(), value)).collect();
     Outcome { input: format!("{name}: {what}"), times, figures }
 }
 
