@@ -336,7 +336,7 @@ const EXPLANATIONS: &[(&str, &str)] = &[
     ("E-vm-encoding", "A list of steps has bytes that are not UTF-8."),
     (
         "E-vm-foreign",
-        "A field from elsewhere, such as a mesh, has no arithmetic steps and cannot be written as a list of them.",
+        "A field from elsewhere, such as a mesh, and a sum of blobs have no arithmetic steps: they cannot be written as a list of them.",
     ),
     ("E-vm-name", "A step has an operand that no line above defines."),
     ("E-vm-number", "A constant in a list of steps is not a number in double precision."),

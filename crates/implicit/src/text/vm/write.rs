@@ -46,6 +46,7 @@ pub fn print_vm(tree: &Tree) -> Result<String, VmWriteError> {
 fn foreign(tree: &Tree) -> String {
     let mut sources = post_order(tree).into_iter().filter_map(|tree| match tree.operation() {
         Operation::Foreign(foreign) => Some(foreign.source().to_owned()),
+        Operation::Blobs(blobs) => Some(format!("{}(...)", blobs.form().name())),
         _ => None,
     });
     sources.next().unwrap_or_default()
