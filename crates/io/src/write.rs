@@ -78,6 +78,10 @@ mod tests {
         Part::new(VoxelGrid::try_new(lattice, Samples::U8(vec![7; 8]), Quantity::Density).unwrap())
     }
 
+    fn ball() -> Part {
+        Part::new(shapeloom_implicit::Implicit::new(shapeloom_implicit::Tree::sphere(1.0)).unwrap())
+    }
+
     fn line() -> Part {
         Part::new(shapeloom_mesh::Polyline::new(vec![DVec3::ZERO, DVec3::X], false))
     }
@@ -124,6 +128,7 @@ mod tests {
                 kinds if kinds.contains(&Kind::Polyline) => line(),
                 kinds if kinds.contains(&Kind::HeightField) => heights(),
                 kinds if kinds.contains(&Kind::VoxelGrid) => grid(),
+                kinds if kinds.contains(&Kind::Implicit) => ball(),
                 _ => surface(),
             });
             let error = write(&shape, format, &WriteContext::default(), &mut Full).unwrap_err();

@@ -38,6 +38,7 @@ fn put(
     let mut report =
         Report::exact("write-implicit", "the same tree, its numbers the shortest that read back to the same bits");
     report.losses = frame_losses(shape, format);
+    context.exec.check()?;
     let mut sink = Sink::new(out, &context.exec);
     text.as_bytes().chunks(1 << 16).try_for_each(|some| sink.bytes(some))?;
     sink.finish()?;
